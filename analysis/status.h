@@ -1,0 +1,30 @@
+// The status column: what a reader of a row must know before trusting its numbers.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace halfslope {
+
+/// Marks in the order they were added, joined by ';'.
+class Status {
+ public:
+  void mark_if(bool condition, std::string_view mark) {
+    if (!condition) return;
+    if (!text_.empty()) text_ += ';';
+    text_ += mark;
+  }
+  bool ok() const { return text_.empty(); }
+  /// "ok" where there are no marks.
+  std::string text() const { return ok() ? "ok" : text_; }
+
+ private:
+  std::string text_;
+};
+
+/// Fewer replicates than this, and intervals are not certified.
+inline constexpr int kCertifiedReplicates = 16;
+/// A reference whose variance is a larger share of the measured mean squared error than this limits the measurement.
+inline constexpr double kReferenceShare = 0.1;
+
+}  // namespace halfslope

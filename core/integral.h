@@ -1,0 +1,71 @@
+// The idea of an integral: what an analytic scene and a pixel of a rendered one both are.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/layout.h"
+#include "core/point_block.h"
+#include "core/term_block.h"
+
+namespace halfslope {
+
+/// A way to draw samples, by name, and the dimensions that one sample takes.
+struct Technique {
+  std::string name;
+  Layout layout;
+};
+
+/// Which samples to take: `technique` at the dimensions from `first_dim` of each point, written to `slot`, with the
+/// densities of the techniques in `set` (indices into the source's techniques).
+struct TechniqueCall {
+  int technique = 0, first_dim = 0, slot = 0;
+  std::span<const int> set;
+};
+
+/// One integral: f and the techniques that sample it, in one measure throughout.
+class Integral {
+ public:
+  virtual ~Integral() = default;
+  /// Draws one sample at each point of the block and writes its terms.
+  virtual void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<float>& terms) const = 0;
+  virtual void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<double>& terms) const = 0;
+};
+
+using Color = std::array<double, 3>;
+
+/// A pixel as an integral: `constant` is what is known without sampling (an emitter seen directly, background), and
+/// `integral` is null where nothing else is to be added.
+struct PixelIntegral {
+  Color constant = {0, 0, 0};
+  std::unique_ptr<Integral> integral;
+};
+
+/// A scene as the engine sees it: width × height pixels of `channels` integrals each, and how they may be sampled.
+class IntegralSource {
+ public:
+  virtual ~IntegralSource() = default;
+  virtual int width() const { return 1; }
+  virtual int height() const { return 1; }
+  int pixels() const { return width() * height(); }
+  /// 1 where every channel is equal.
+  virtual int channels() const { return 1; }
+  virtual std::span<const Technique> techniques() const = 0;
+  /// Pixel y · width + x, rows from the top.
+  virtual PixelIntegral pixel(int index) const = 0;
+  /// The exact value of every pixel, where it is known in closed form.
+  virtual std::optional<Color> closed_form(int /*pixel*/) const { return std::nullopt; }
+  /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
+  virtual std::vector<std::string> regions() const { return {}; }
+  virtual int region(int /*pixel*/) const { return 0; }
+  /// What this scene lets us skip, and why: lines for --dry-run.
+  virtual std::vector<std::string> skips() const { return {}; }
+  /// All that determines the integrals, for the cache of references.
+  virtual std::string fingerprint() const = 0;
+};
+
+}  // namespace halfslope

@@ -1,0 +1,17 @@
+// The kernels themselves, inside one instruction set's library.
+#pragma once
+
+#include "estimators/kernels.h"
+
+namespace halfslope::kernel {
+
+template <class T>
+void sample_light(const LightingCall<T>& call);
+template <class T>
+void sample_bsdf(const LightingCall<T>& call);
+template <class T>
+void fold(const FoldCall<T>& call);
+template <class T>
+void accumulate(const T* values, int samples, double* sum, double* compensation);
+
+}  // namespace halfslope::kernel

@@ -1,0 +1,47 @@
+// A pixel as its kernels see it: the point it looks at is the origin and that point's normal is the z axis.
+#pragma once
+
+#include <cstdint>
+
+#include "scenes/bsdf_kind.h"
+
+namespace halfslope {
+
+/// A sphere or rectangle relative to the receiving point, in its local frame. Positions are differences taken in double
+/// precision before they are rounded to T, so binary32 kernels lose nothing to the scene's distance from its origin.
+template <class T>
+struct LocalShape {
+  bool is_sphere = true;
+  T center[3] = {};
+  T radius = 0;              ///< of a sphere
+  T u[3] = {}, v[3] = {};    ///< a rectangle's half axes
+  T inv_u2 = 0, inv_v2 = 0;  ///< 1/|half axis|²
+  T normal[3] = {};          ///< a rectangle's front
+  bool inside = false;       ///< the receiver is inside the sphere: rays meet the far side
+  int light = -1;            ///< its index among the scene's lights, or −1
+};
+
+template <class T>
+struct LocalLight {
+  LocalShape<T> shape;
+  T radiance[3] = {};  ///< 0 where it cannot reach the receiver
+  T pdf_area = 0;      ///< 1/area over the number of lights: density of choosing the light and the point
+  bool reaches = false;
+};
+
+/// All that the kernels of one pixel read. Pointers are to arrays that live as long as the pixel's Integral.
+template <class T>
+struct PixelData {
+  T wo[3];              ///< towards the eye, local; wo[2] > 0
+  T world_to_local[9];  ///< rows: the local axes in world space
+  BsdfKind bsdf = BsdfKind::kDiffuse;
+  bool unit_fresnel = true;
+  T alpha = 1;
+  T reflectance[3], eta[3], k[3];
+  const LocalLight<T>* lights = nullptr;
+  int light_count = 0;
+  const LocalShape<T>* occluders = nullptr;  ///< shapes that may come between the receiver and some light
+  int occluder_count = 0;
+};
+
+}  // namespace halfslope

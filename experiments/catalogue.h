@@ -1,0 +1,51 @@
+// Everything an experiment can name.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/integral.h"
+#include "samplers/catalogue.h"
+
+namespace halfslope {
+
+/// What `list scenes` says of a scene.
+struct SceneInfo {
+  std::string name, parameters, description, reference;
+  bool rendered = false;
+};
+
+/// Samplers and scenes by name. Embedders add their own before they call the command line:
+///   auto catalogue = Catalogue::built_in();
+///   catalogue.samplers.add(make_my_sampler);
+///   catalogue.add_scene({"my-scene", "", "what it is", "where from"}, make_my_scene);
+///   return halfslope::command_line(argc, argv, catalogue);
+class Catalogue {
+ public:
+  using Resolution = std::optional<std::array<int, 2>>;
+  /// Makes the scene of that full name (parameters included); null resolution: the scene's own.
+  using MakeScene =
+      std::function<std::unique_ptr<IntegralSource>(const std::string& name, const Resolution& resolution)>;
+
+  static Catalogue built_in();
+
+  SamplerCatalogue samplers;
+  void add_scene(SceneInfo info, MakeScene make);
+  std::vector<SceneInfo> scenes() const;
+  /// A catalogue scene ("name" or "name:parameters"), or a Mitsuba scene where the name ends in ".xml". Throws
+  /// Error(kBadInput) naming the nearest scene where there is none.
+  std::unique_ptr<IntegralSource> make_scene(const std::string& name, const Resolution& resolution) const;
+
+ private:
+  struct Entry {
+    SceneInfo info;
+    MakeScene make;
+  };
+  std::vector<Entry> entries_;
+};
+
+}  // namespace halfslope

@@ -1,0 +1,200 @@
+#include "experiments/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "core/error.h"
+#include "core/version.h"
+#include "experiments/commands.h"
+#include "experiments/spec_keys.h"
+
+namespace halfslope {
+namespace {
+
+// What each key of an experiment means, for --help of `run`.
+std::string key_help(const std::string& key) {
+  static const std::map<std::string, std::string> kHelp = {
+      {"name", "the experiment's name; the default run folder is out/NAME"},
+      {"scene", "catalogue names, or paths of Mitsuba 3 .xml files"},
+      {"estimators", "HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: all that the scene has"},
+      {"samplers", "see `halfslope list samplers`"},
+      {"samples", "sample counts N: 4:1024 for powers of two, or a list"},
+      {"replicates", "independent randomisations (default 64)"},
+      {"seed", "of every random number (default 1)"},
+      {"resolution", "WIDTH,HEIGHT; default: the scene's own"},
+      {"pixels", "all, or how many to choose"},
+      {"images", "sample counts to write EXRs for, or none"},
+      {"precision", "f32, f64 or both (default f32)"},
+  };
+  const auto found = kHelp.find(key);
+  return found == kHelp.end() ? "" : found->second;
+}
+
+// Every command and its flags, for the shell.
+std::string bash_completion(const CLI::App& app) {
+  std::string commands, cases;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    std::string flags = "--help";
+    for (const CLI::Option* option : command->get_options()) {
+      for (const auto& name : option->get_lnames()) {
+        if (name != "help") flags += " --" + name;
+      }
+    }
+    commands += (commands.empty() ? "" : " ") + command->get_name();
+    cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), flags);
+  }
+  return "_halfslope() {\n  local current=\"${COMP_WORDS[COMP_CWORD]}\" previous=\"${COMP_WORDS[COMP_CWORD-1]}\" "
+         "words\n"
+         "  case \"$previous\" in\n"
+         "    --sampler|--samplers) words=\"$(halfslope list samplers --names)\" ;;\n"
+         "    --scene) words=\"$(halfslope list scenes --names)\" ;;\n"
+         "    list) words=\"samplers estimators scenes statuses\" ;;\n"
+         "    *) case \"${COMP_WORDS[1]}\" in\n" +
+         cases + "    *) words=\"" + commands +
+         "\" ;;\n    esac ;;\n  esac\n"
+         "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- \"$current\"))\n}\n"
+         "complete -o filenames -F _halfslope halfslope\n";
+}
+
+int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue) {
+  CLI::App app{"halfslope: convergence analysis for Monte Carlo and quasi-Monte Carlo rendering", "halfslope"};
+  app.set_version_flag("--version", version());
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  app.footer(
+      "Exit codes: 0 done, 1 a check failed or a cell is invalid, 2 usage, 3 bad input, 4 input/output, 130 "
+      "interrupted.");
+
+  RunArguments run;
+  CLI::App* run_app = app.add_subcommand("run", "run an experiment: every estimator x sampler over many replicates");
+  run_app->add_option("experiment", run.file, "an experiment file (.toml); flags override it");
+  for (const auto& key : spec_key_names()) {
+    run_app
+        ->add_option_function<std::string>(
+            "--" + key, [&run, key](const std::string& value) { run.keys[key] = value; }, key_help(key))
+        ->type_name("VALUE");
+  }
+  run_app->add_option("--out", run.out, "run folder")->type_name("DIR");
+  run_app->add_option("--threads", run.threads, "threads; the results do not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 4096));
+  run_app->add_flag("--quiet", run.quiet, "no progress, no summary");
+  run_app->add_flag("--dry-run", run.dry_run, "print the plan and what is skipped and why; measure nothing");
+  run_app->add_flag("--overwrite", run.overwrite, "start afresh in a folder that holds another experiment");
+  run_app->add_flag("--json", run.json, "print convergence.csv's rows as JSON");
+
+  ListArguments list;
+  bool names_only = false;
+  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes and statuses");
+  list_app->add_option("what", list.what, "samplers, estimators, scenes or statuses");
+  list_app->add_flag("--json", list.json, "as JSON");
+  list_app->add_flag("--names", names_only, "names of samplers or scenes alone, a line each");
+
+  PointsArguments points;
+  CLI::App* points_app = app.add_subcommand("points", "print a sampler's points as CSV");
+  points_app->add_option("--sampler", points.sampler, "see `halfslope list samplers`")->required()->type_name("NAME");
+  points_app->add_option("--count", points.count, "number of points N")->capture_default_str()->type_name("N");
+  points_app->add_option("--dims", points.dims, "dimensions, taken as pairs")->capture_default_str()->type_name("D");
+  points_app->add_option("--replicate", points.replicate, "which randomisation")->capture_default_str()->type_name("K");
+  points_app->add_option("--pixel", points.pixel, "which pixel's")->capture_default_str()->type_name("P");
+  points_app->add_option("--seed", points.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  points_app->add_option("--precision", points.precision, "f32 or f64")->capture_default_str()->type_name("P");
+
+  RenderArguments render;
+  CLI::App* render_app = app.add_subcommand("render", "render one replicate to an EXR image");
+  render_app->add_option("--scene", render.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
+  render_app->add_option("--estimator", render.estimator, "see `halfslope list estimators`")
+      ->capture_default_str()
+      ->type_name("NAME");
+  render_app->add_option("--sampler", render.sampler, "see `halfslope list samplers`")
+      ->capture_default_str()
+      ->type_name("NAME");
+  render_app->add_option("--samples", render.samples, "N per pixel")->capture_default_str()->type_name("N");
+  render_app->add_option("--seed", render.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  render_app->add_option("--replicate", render.replicate, "which randomisation")->capture_default_str()->type_name("K");
+  render_app->add_option("--resolution", render.resolution, "WIDTH,HEIGHT")->type_name("W,H");
+  render_app->add_option("--precision", render.precision, "f32 or f64")->capture_default_str()->type_name("P");
+  render_app->add_option("--out,-o", render.out, "image file (default: SCENE.exr)")->type_name("FILE");
+  render_app->add_option("--threads", render.threads, "threads (default: all cores)")->check(CLI::Range(1, 4096));
+  render_app->add_flag("--quiet", render.quiet, "no progress");
+
+  ReferenceArguments reference;
+  CLI::App* reference_app =
+      app.add_subcommand("reference", "print or render a scene's reference values, with standard errors");
+  reference_app->add_option("--scene", reference.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
+  reference_app->add_option("--resolution", reference.resolution, "WIDTH,HEIGHT")->type_name("W,H");
+  reference_app->add_option("--samples", reference.samples, "N of each replicate")
+      ->capture_default_str()
+      ->type_name("N");
+  reference_app
+      ->add_option("--relative-error", reference.relative_error,
+                   "rms of the pixels' relative standard errors to reach (default 1e-5 up to 64 pixels, else 1e-3)")
+      ->type_name("X");
+  reference_app->add_option("--max-replicates", reference.most_replicates, "stop with an error beyond these")
+      ->capture_default_str()
+      ->type_name("R")
+      ->check(CLI::Range(16, 1 << 24));
+  reference_app->add_option("--out,-o", reference.out, "write an EXR instead of CSV")->type_name("FILE");
+  reference_app->add_option("--threads", reference.threads, "threads (default: all cores)")->check(CLI::Range(1, 4096));
+  reference_app->add_flag("--no-cache", reference.no_cache, "neither read nor write the cache of references");
+  reference_app->add_flag("--json", reference.json, "as JSON");
+  reference_app->add_flag("--quiet", reference.quiet, "no progress");
+
+  CLI::App* completion_app =
+      app.add_subcommand("completion", "print a bash completion script: source <(halfslope completion)");
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      names.push_back(command->get_name());
+    std::string hint;
+    if (argc > 1 && app.get_subcommands().empty()) hint = did_you_mean(argv[1], names);
+    fmt::print(stderr, "halfslope: {}{}\nTry `halfslope {}--help`.\n", error.what(), hint,
+               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    return static_cast<int>(ExitCode::kUsage);
+  }
+  if (run_app->parsed()) return run_command(run, catalogue);
+  if (list_app->parsed()) {
+    if (!names_only) return list_command(list, catalogue);
+    if (list.what == "scenes") {
+      for (const SceneInfo& scene : catalogue.scenes()) fmt::print("{}\n", scene.name);
+    } else {
+      for (const auto& name : catalogue.samplers.names()) fmt::print("{}\n", name);
+    }
+    return 0;
+  }
+  if (points_app->parsed()) return points_command(points, catalogue);
+  if (render_app->parsed()) return render_command(render, catalogue);
+  if (reference_app->parsed()) return reference_command(reference, catalogue);
+  if (completion_app->parsed()) fmt::print("{}", bash_completion(app));
+  return 0;
+}
+
+}  // namespace
+
+int command_line(int argc, const char* const* argv, const Catalogue& catalogue) {
+  int code = static_cast<int>(ExitCode::kIo);
+  try {
+    code = parse_and_run(argc, argv, catalogue);
+  } catch (const Error& error) {
+    fmt::print(stderr, "halfslope: {}\n", error.what());
+    code = static_cast<int>(error.code());
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "halfslope: out of memory; ask for fewer pixels or replicates\n");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "halfslope: {}\n", error.what());
+  }
+  if (std::fflush(stdout) != 0) {
+    fmt::print(stderr, "halfslope: standard output could not be written\n");
+    code = code == 0 ? static_cast<int>(ExitCode::kIo) : code;
+  }
+  return code;
+}
+
+}  // namespace halfslope

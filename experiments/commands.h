@@ -1,0 +1,58 @@
+// The commands, apart from how their arguments are spelled.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "experiments/catalogue.h"
+#include "experiments/spec.h"
+
+namespace halfslope {
+
+struct RunArguments {
+  std::string file;                         ///< experiment.toml, or empty
+  std::map<std::string, std::string> keys;  ///< keys of the experiment given as flags
+  std::string out;
+  int threads = 0;
+  bool quiet = false, dry_run = false, overwrite = false, json = false;
+};
+int run_command(const RunArguments& arguments, const Catalogue& catalogue);
+
+struct ListArguments {
+  std::string what;  ///< samplers, estimators, scenes, statuses, or empty for all
+  bool json = false;
+};
+int list_command(const ListArguments& arguments, const Catalogue& catalogue);
+
+struct PointsArguments {
+  std::string sampler;
+  std::uint64_t count = 16, seed = 1;
+  int dims = 2;
+  std::uint32_t replicate = 0, pixel = 0;
+  std::string precision = "f64";
+};
+int points_command(const PointsArguments& arguments, const Catalogue& catalogue);
+
+struct RenderArguments {
+  std::string scene, estimator = "balance", sampler = "halton-owen", resolution, precision = "f32", out;
+  std::uint64_t samples = 64, seed = 1;
+  std::uint32_t replicate = 0;
+  int threads = 0;
+  bool quiet = false;
+};
+int render_command(const RenderArguments& arguments, const Catalogue& catalogue);
+
+struct ReferenceArguments {
+  std::string scene, resolution, out;
+  std::uint64_t samples = 8192;
+  std::optional<double> relative_error;
+  std::int64_t most_replicates = 1 << 14;
+  int threads = 0;
+  bool quiet = false, no_cache = false, json = false;
+};
+int reference_command(const ReferenceArguments& arguments, const Catalogue& catalogue);
+
+}  // namespace halfslope

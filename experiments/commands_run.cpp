@@ -1,0 +1,124 @@
+// run and list.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "core/error.h"
+#include "estimators/estimator.h"
+#include "experiments/commands.h"
+#include "experiments/engine.h"
+#include "experiments/images.h"
+#include "experiments/interrupt.h"
+#include "experiments/manifest.h"
+#include "experiments/tables.h"
+
+namespace halfslope {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Listed {
+  std::string name, description, reference, extra;
+};
+
+std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) {
+  std::vector<Listed> rows;
+  if (what == "samplers") {
+    for (const SamplerInfo& s : catalogue.samplers.list()) {
+      rows.push_back({s.name, s.description, s.reference,
+                      fmt::format("{}, {}, at most {} dimensions", s.sequence ? "sequence" : "set",
+                                  s.randomised ? "randomised" : "deterministic", s.max_dims)});
+    }
+  } else if (what == "estimators") {
+    for (const EstimatorInfo& e : estimator_catalogue()) rows.push_back({e.name, e.description, e.reference, ""});
+  } else if (what == "scenes") {
+    for (const SceneInfo& s : catalogue.scenes()) {
+      rows.push_back({s.parameters.empty() ? s.name : s.name + ":" + s.parameters, s.description, s.reference,
+                      s.rendered ? "rendered" : "analytic"});
+    }
+  } else {
+    rows = {{"ok", "nothing to say against the row's numbers", "", ""},
+            {"few-replicates", "below 16 replicates: the intervals are not certified", "", ""},
+            {"heavy-tailed", "kurtosis above max(5, R/40): rare large errors; the intervals are not certified", "", ""},
+            {"reference-limited", "the reference's own variance is more than 10 % of the measured error, or all of it",
+             "", ""},
+            {"rounding-limited", "the measured error is within reach of the precision's rounding: no rate is fitted",
+             "", ""},
+            {"deterministic", "one replicate: no variance, no kurtosis, no intervals", "", ""},
+            {"exact", "every error is 0", "", ""},
+            {"invalid", "non-finite estimates were met; manifest.json names the first", "", ""},
+            {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
+            {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""}};
+  }
+  return rows;
+}
+
+}  // namespace
+
+int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
+  const InterruptGuard guard;
+  Spec spec;
+  if (!arguments.file.empty()) spec = load_spec(arguments.file);
+  for (const auto& [key, value] : arguments.keys) apply_flag(spec, key, value);
+  validate(spec);
+  if (arguments.dry_run) {
+    const Plan plan = make_plan(spec, catalogue);
+    if (arguments.json) {
+      fmt::print("{}\n", Json{{"name", spec.name},
+                              {"cells", plan.cells.size()},
+                              {"passes", plan.passes.size()},
+                              {"units", plan.units.size()},
+                              {"evaluations", plan.evaluations()},
+                              {"skipped", plan.skips}}
+                             .dump(2));
+    } else {
+      fmt::print("{}", describe_plan(spec, plan));
+    }
+    return static_cast<int>(ExitCode::kDone);
+  }
+  const std::string out = arguments.out.empty() ? "out/" + path_component(spec.name) : arguments.out;
+  const RunOutcome outcome =
+      run_experiment(spec, catalogue, {out, arguments.threads, arguments.quiet, arguments.overwrite});
+  if (arguments.json) {
+    fmt::print("{}", cells_json(outcome.plan, outcome.results));
+  } else if (!arguments.quiet) {
+    fmt::print("{}\nTables and images: {}\n", summary(outcome.plan, outcome.results), out);
+  }
+  if (outcome.invalid_cells > 0) {
+    fmt::print(stderr, "halfslope: {} of {} cells are invalid (non-finite estimates); see {}/manifest.json\n",
+               outcome.invalid_cells, outcome.plan.cells.size(), out);
+    return static_cast<int>(ExitCode::kCheckFailed);
+  }
+  return static_cast<int>(ExitCode::kDone);
+}
+
+int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
+  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "statuses"};
+  if (!arguments.what.empty() && std::find(kinds.begin(), kinds.end(), arguments.what) == kinds.end()) {
+    fail(ExitCode::kUsage, "there is no list of '{}'{}; allowed: samplers, estimators, scenes, statuses",
+         arguments.what, did_you_mean(arguments.what, kinds));
+  }
+  Json json;
+  for (const auto& kind : kinds) {
+    if (!arguments.what.empty() && arguments.what != kind) continue;
+    const auto rows = listed(kind, catalogue);
+    std::size_t width = 0;
+    for (const Listed& row : rows) width = std::max(width, row.name.size());
+    if (!arguments.json) fmt::print("{}{}\n", kind, arguments.what.empty() ? ":" : "");
+    for (const Listed& row : rows) {
+      if (arguments.json) {
+        json[kind].push_back(
+            {{"name", row.name}, {"description", row.description}, {"kind", row.extra}, {"reference", row.reference}});
+        continue;
+      }
+      fmt::print("  {:<{}}  {}\n", row.name, width, row.description);
+      if (!row.extra.empty()) fmt::print("  {:<{}}  {}\n", "", width, row.extra);
+      if (!row.reference.empty()) fmt::print("  {:<{}}  {}\n", "", width, row.reference);
+    }
+  }
+  if (arguments.json) fmt::print("{}\n", json.dump(2));
+  return static_cast<int>(ExitCode::kDone);
+}
+
+}  // namespace halfslope

@@ -1,0 +1,178 @@
+#include "experiments/engine.h"
+
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/kernel_library.h"
+#include "core/random.h"
+#include "core/version.h"
+#include "experiments/fold.h"
+#include "experiments/images.h"
+#include "experiments/interrupt.h"
+#include "experiments/journal.h"
+#include "experiments/manifest.h"
+#include "experiments/progress.h"
+#include "experiments/reference.h"
+#include "experiments/run_folder.h"
+#include "experiments/tables.h"
+#include "experiments/unit.h"
+
+namespace halfslope {
+namespace {
+
+/// A reference's variance is at most this share of the smallest mean squared error expected, and the error expected is
+/// the reference's own estimator's at the largest N, halved lest another does better.
+constexpr double kReferenceErrorShare = 0.01 / 2;
+
+std::vector<Reference> make_references(const Plan& plan, const Catalogue& catalogue, const RunOptions& options) {
+  std::vector<Reference> references;
+  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
+    std::uint64_t largest = 1;
+    for (const Cell& cell : plan.cells) {
+      if (cell.scene == s) largest = std::max(largest, cell.samples);
+    }
+    ReferenceGoal goal;
+    goal.compare_samples = largest;
+    goal.samples = std::max<std::uint64_t>(256, 4 * largest);
+    goal.error_share = kReferenceErrorShare;
+    references.push_back(make_reference(*plan.scenes[s].source, plan.scenes[s].name, plan.scenes[s].pixels, goal,
+                                        {options.threads, options.quiet, default_cache()}, catalogue.samplers));
+  }
+  return references;
+}
+
+std::string run_hash(const Spec& spec, const Plan& plan) {
+  std::string text = spec_hash(spec);
+  for (const PlannedScene& scene : plan.scenes) text += "\n" + scene.source->fingerprint();
+  return fmt::format("{:016x}", hash_text(text));
+}
+
+/// Takes units in order and journals them; every thread until none is left, one fails, or a signal comes.
+class Runner {
+ public:
+  Runner(const Plan& plan, std::span<const Reference> references, const Catalogue& catalogue, Journal& journal,
+         bool quiet, const std::string& label)
+      : plan_(plan),
+        references_(references),
+        catalogue_(catalogue),
+        journal_(journal),
+        progress_(label, remaining(), quiet) {}
+
+  void run(int threads) {
+    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+    arena.execute([&] {
+      tbb::task_group group;
+      for (int t = 0; t < arena.max_concurrency(); ++t) group.run([&] { work(); });
+      group.wait();
+    });
+    if (failure_) std::rethrow_exception(failure_);
+    if (interrupted()) {
+      fail(ExitCode::kInterrupted, "interrupted; {} of {} units are done: run the same command again to go on",
+           journal_.size(), plan_.units.size());
+    }
+    progress_.finish();
+  }
+
+ private:
+  double remaining() const {
+    double sum = 0;
+    for (std::size_t u = 0; u < plan_.units.size(); ++u) {
+      const Unit& unit = plan_.units[u];
+      if (!journal_.has(u))
+        sum += static_cast<double>(plan_.passes[unit.pass].evaluations()) * static_cast<double>(unit.pixel_count) *
+               static_cast<double>(unit.replicate_count);
+    }
+    return sum;
+  }
+
+  void work() {
+    try {
+      UnitEvaluator evaluator(plan_, references_, catalogue_.samplers);
+      for (std::size_t u = next_++; u < plan_.units.size() && !stop(); u = next_++) {
+        if (journal_.has(u)) continue;
+        const auto parts = evaluator.evaluate(plan_.units[u], [&](double samples) {
+          progress_.advance(samples);
+          return !stop();
+        });
+        if (!parts.empty()) journal_.append(u, encode_parts(parts));
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+  bool stop() const { return failed_ || interrupted(); }
+
+  const Plan& plan_;
+  std::span<const Reference> references_;
+  const Catalogue& catalogue_;
+  Journal& journal_;
+  Progress progress_;
+  std::atomic<std::size_t> next_ = 0;
+  std::atomic<bool> failed_ = false;
+  std::mutex mutex_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const RunOptions& options) {
+  RunOutcome outcome;
+  outcome.plan = make_plan(spec, catalogue);
+  const Plan& plan = outcome.plan;
+  const RunFolder folder(options.out);
+  Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, options.overwrite);
+  if (journal.dropped_bytes() > 0 && !options.quiet) {
+    fmt::print(stderr,
+               "halfslope: {} bytes at the journal's end were damaged by an interruption; those units are done again\n",
+               journal.dropped_bytes());
+  }
+  const std::vector<Reference> references = make_references(plan, catalogue, options);
+  Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
+  journal.sync();
+
+  outcome.results = collect_results(plan, references, journal, catalogue.samplers, options.threads,
+                                    [&](std::size_t cell, const FoldedCell& folded) {
+                                      if (plan.cells[cell].image)
+                                        write_cell_image(folder.path(), plan, plan.cells[cell], folded, references);
+                                    });
+  for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.nonfinite > 0 ? 1 : 0;
+  const auto write = [&](const char* name, const std::string& text) {
+    if (!text.empty()) write_file_atomically(folder.path(name), text);
+  };
+  write_reference_images(folder.path(), plan, references);
+  write("replicates.csv", replicates_csv(plan, outcome.results));
+  write("rates.csv", rates_csv(plan, outcome.results));
+  write("regions.csv", regions_csv(plan, outcome.results));
+  write("convergence.csv", convergence_csv(plan, outcome.results));
+  write("manifest.json", manifest_json(spec, plan, outcome.results, references));
+  return outcome;
+}
+
+std::string describe_plan(const Spec& spec, const Plan& plan) {
+  std::string text =
+      fmt::format("{}: {} cells from {} passes in {} units of work, {:.3g} integrand evaluations\n", spec.name,
+                  plan.cells.size(), plan.passes.size(), plan.units.size(), plan.evaluations());
+  for (const Pass& pass : plan.passes) {
+    const PlannedScene& scene = plan.scenes[pass.scene];
+    std::vector<std::string> names;
+    for (const std::size_t e : pass.estimators) names.push_back(scene.estimators[e].name);
+    text += fmt::format("  {}, {}, {}: {} at N = {}{}, {} pixels x {} replicates, {} dimensions\n", scene.name,
+                        to_string(pass.precision), pass.sampler, fmt::join(names, " + "), pass.samples.front(),
+                        pass.samples.size() > 1 ? fmt::format(" ... {}", pass.samples.back()) : "", scene.pixels.size(),
+                        pass.replicates, pass.allocation.layout(scene.source->techniques()).dims());
+  }
+  text += "skipped:\n";
+  for (const auto& skip : plan.skips) text += "  " + skip + "\n";
+  return text;
+}
+
+}  // namespace halfslope

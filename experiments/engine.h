@@ -1,0 +1,33 @@
+// Runs a plan: references, units of work in parallel, the journal, the tables.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "experiments/catalogue.h"
+#include "experiments/plan.h"
+#include "experiments/results.h"
+
+namespace halfslope {
+
+struct RunOptions {
+  std::filesystem::path out;
+  int threads = 0;  ///< 0: every core
+  bool quiet = false;
+  bool overwrite = false;
+};
+
+struct RunOutcome {
+  Plan plan;
+  Results results;
+  std::size_t invalid_cells = 0;
+};
+
+/// Plans, measures what the folder's journal does not already hold, and writes the tables and images. Interrupted by a
+/// signal it throws Error(kInterrupted), and the same call goes on from there to the same bytes.
+RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const RunOptions& options);
+
+/// What --dry-run prints: the work, and what is skipped and why.
+std::string describe_plan(const Spec& spec, const Plan& plan);
+
+}  // namespace halfslope

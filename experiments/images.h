@@ -1,0 +1,29 @@
+// The EXR files of a run folder.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "core/exr.h"
+#include "experiments/fold.h"
+#include "experiments/plan.h"
+#include "experiments/reference.h"
+
+namespace halfslope {
+
+/// images/<scene>/<precision>/<estimator>/<sampler>/<samples>.exr: R, G, B the mean over replicates, and the layers
+/// `variance` (over replicates, R − 1), `mse` and `bias` against the reference, pixel by pixel.
+void write_cell_image(const std::filesystem::path& folder, const Plan& plan, const Cell& cell, const FoldedCell& folded,
+                      const std::vector<Reference>& references);
+
+/// reference.exr, or reference-<scene>.exr where several scenes have pictures: R, G, B and the layer `variance`.
+void write_reference_images(const std::filesystem::path& folder, const Plan& plan,
+                            const std::vector<Reference>& references);
+
+/// The picture of a reference over all pixels of its scene.
+ExrImage reference_image(const IntegralSource& source, const Reference& reference);
+
+/// A name as one component of a path: '/' becomes '_'.
+std::string path_component(const std::string& name);
+
+}  // namespace halfslope

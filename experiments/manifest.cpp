@@ -1,0 +1,106 @@
+#include "experiments/manifest.h"
+
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <ctime>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/error.h"
+#include "core/kernel_library.h"
+#include "core/version.h"
+
+namespace halfslope {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string now_utc() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc = {};
+  gmtime_r(&now, &utc);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
+                     utc.tm_hour, utc.tm_min, utc.tm_sec);
+}
+
+Json optional(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
+
+}  // namespace
+
+std::string manifest_json(const Spec& spec, const Plan& plan, const Results& results,
+                          const std::vector<Reference>& references) {
+  utsname host = {};
+  uname(&host);
+  Json manifest;
+  manifest["schema_version"] = 1;
+  manifest["name"] = spec.name;
+  manifest["spec"] = Json::parse(canonical_json(spec));
+  manifest["spec_hash"] = spec_hash(spec);
+  manifest["version"] = version();
+  manifest["compiler"] = compiler();
+  manifest["isa"] = to_string(active_isa());
+  manifest["isa_class"] = isa_class(active_isa());
+  manifest["host"] = {{"system", host.sysname},
+                      {"release", host.release},
+                      {"machine", host.machine},
+                      {"cores", std::thread::hardware_concurrency()}};
+  manifest["finished"] = now_utc();
+  manifest["cells"] = plan.cells.size();
+  manifest["evaluations"] = plan.evaluations();
+  manifest["skipped"] = plan.skips;
+  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
+    manifest["references"].push_back({{"scene", plan.scenes[s].name},
+                                      {"origin", references[s].origin},
+                                      {"samples", references[s].samples},
+                                      {"replicates", references[s].replicates},
+                                      {"mean", references[s].mean},
+                                      {"mean_se", references[s].mean_se},
+                                      {"mean_variance", references[s].mean_variance}});
+  }
+  manifest["invalid"] = Json::array();
+  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
+    const CellResult& result = results.cells[c];
+    if (result.statistics.nonfinite == 0) continue;
+    manifest["invalid"].push_back({{"cell", cell_name(plan, plan.cells[c])},
+                                   {"nonfinite", result.statistics.nonfinite},
+                                   {"first_replicate", result.first_bad_replicate},
+                                   {"first_pixel", result.first_bad_pixel},
+                                   {"seed", spec.seed}});
+  }
+  return manifest.dump(2) + "\n";
+}
+
+std::string cells_json(const Plan& plan, const Results& results) {
+  Json cells = Json::array();
+  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
+    const Cell& cell = plan.cells[c];
+    const CellStatistics& s = results.cells[c].statistics;
+    cells.push_back({{"scene", plan.scenes[cell.scene].name},
+                     {"estimator", plan.scenes[cell.scene].estimators[cell.estimator].name},
+                     {"sampler", cell.sampler},
+                     {"precision", to_string(cell.precision)},
+                     {"samples", cell.samples},
+                     {"replicates", plan.passes[cell.pass].replicates},
+                     {"pixels", plan.scenes[cell.scene].pixels.size()},
+                     {"mean", optional(s.mean)},
+                     {"reference", s.reference},
+                     {"reference_se", s.reference_se},
+                     {"reference_mse", s.reference_mse},
+                     {"bias", optional(s.bias)},
+                     {"bias_se", optional(s.bias_se)},
+                     {"variance", optional(s.variance)},
+                     {"rmse", optional(s.rmse)},
+                     {"rmse_lo", optional(s.rmse_lo)},
+                     {"rmse_hi", optional(s.rmse_hi)},
+                     {"mae", optional(s.mae)},
+                     {"relmse", optional(s.relmse)},
+                     {"kurtosis", optional(s.kurtosis)},
+                     {"median_abs_error", optional(s.median_abs_error)},
+                     {"nonfinite", s.nonfinite},
+                     {"status", s.status}});
+  }
+  return cells.dump(2) + "\n";
+}
+
+}  // namespace halfslope

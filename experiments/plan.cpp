@@ -1,0 +1,252 @@
+#include "experiments/plan.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/error.h"
+#include "experiments/joined.h"
+
+namespace halfslope {
+namespace {
+
+// Samples of a unit, about: half a second of work, so that little is lost to an interruption.
+constexpr std::uint64_t kUnitSamples = std::uint64_t{1} << 24;
+constexpr int kTile = 256;
+constexpr std::int64_t kMostBatch = 4096;
+
+[[noreturn]] void fail_at(const Spec& spec, const std::string& key, const std::string& message) {
+  const auto place = spec.places.find(key);
+  const auto code = spec.codes.find(key);
+  fail(code == spec.codes.end() ? ExitCode::kBadInput : static_cast<ExitCode>(code->second), "{}{}",
+       place == spec.places.end() ? "" : place->second + ": ", message);
+}
+
+// Runs `make`; an error of it is about the value of `key`.
+template <class Make>
+auto at(const Spec& spec, const std::string& key, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kBadInput) throw;
+    fail_at(spec, key, error.what());
+  }
+}
+
+// `count` of `total` pixels, one in each of equal runs of the image: a fixed choice that covers it.
+std::vector<int> choose_pixels(int total, std::optional<std::int64_t> wanted) {
+  std::vector<int> pixels;
+  if (!wanted || *wanted >= total) {
+    pixels.resize(static_cast<std::size_t>(total));
+    std::iota(pixels.begin(), pixels.end(), 0);
+    return pixels;
+  }
+  const StreamKey key = stream_key(0, "pixels", "choice");
+  for (std::int64_t i = 0; i < *wanted; ++i) {
+    const std::int64_t begin = i * total / *wanted, end = (i + 1) * total / *wanted;
+    const std::uint64_t word = random_word(key, Draw::kHigh, 0, static_cast<std::uint32_t>(i), 0, 0);
+    pixels.push_back(
+        static_cast<int>(begin + static_cast<std::int64_t>((word * static_cast<std::uint64_t>(end - begin)) >> 32)));
+  }
+  return pixels;
+}
+
+// The counts of the spec that the allocation and the sampler can take.
+std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estimator, const Sampler& sampler,
+                                        const Layout& layout, Plan& plan) {
+  const auto round = static_cast<std::uint64_t>(estimator.allocation.round());
+  std::vector<std::uint64_t> legal, skipped;
+  std::string why;
+  for (const std::uint64_t n : spec.samples.counts) {
+    std::string problem;
+    if (n % round != 0) {
+      const std::uint64_t below = n / round * round;
+      problem = fmt::format("'{}' takes {} samples a round, so N = {} does not divide; the nearest legal: {}{}",
+                            estimator.name, round, n, below > 0 ? std::to_string(below) + " and " : "", below + round);
+    } else if (const auto neighbours = sampler.illegal(n / round, layout)) {
+      std::string nearest;
+      for (const auto& m : {neighbours->below, neighbours->above}) {
+        if (m) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*m * round);
+      }
+      problem = fmt::format("sampler '{}' cannot make N = {} in {} dimensions for '{}'; the nearest legal: {}",
+                            sampler.info().name, n, layout.dims(), estimator.name, nearest);
+    }
+    if (problem.empty()) {
+      legal.push_back(n);
+    } else if (!spec.samples.is_range) {
+      fail_at(spec, "samples", problem);
+    } else {
+      skipped.push_back(n);
+      why = problem;
+    }
+  }
+  if (!skipped.empty()) {
+    plan.skips.push_back(fmt::format("{} of the range's sample counts are skipped for sampler '{}': {}", skipped.size(),
+                                     sampler.info().name, why));
+  }
+  return legal;
+}
+
+PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std::string& name, Plan& plan) {
+  PlannedScene scene;
+  scene.name = name;
+  scene.source = at(spec, "scene", [&] { return catalogue.make_scene(name, spec.resolution); });
+  scene.pixels = choose_pixels(scene.source->pixels(), spec.pixels);
+  auto names = spec.estimators;
+  if (names.empty()) {
+    for (const Technique& technique : scene.source->techniques()) names.push_back(technique.name);
+    if (names.size() > 1) names.insert(names.end(), {"average", "balance", "power"});
+  }
+  for (const auto& estimator : names) {
+    scene.estimators.push_back(at(spec, "estimators", [&] {
+      try {
+        return parse_estimator(estimator, scene.source->techniques());
+      } catch (const Error& error) {
+        fail(error.code(), "scene '{}': {}", name, error.what());
+      }
+    }));
+  }
+  for (const auto& skip : scene.source->skips()) plan.skips.push_back(fmt::format("{}: {}", name, skip));
+  if (scene.source->closed_form(0))
+    plan.skips.push_back(fmt::format("{}: its integral is known in closed form: no reference is rendered", name));
+  if (scene.pixels.size() < static_cast<std::size_t>(scene.source->pixels())) {
+    plan.skips.push_back(
+        fmt::format("{}: {} of {} pixels are measured, as asked", name, scene.pixels.size(), scene.source->pixels()));
+    if (!spec.images.empty())
+      plan.skips.push_back(fmt::format("{}: no images, since not all pixels are measured", name));
+  }
+  return scene;
+}
+
+// Tiles and batches that hold about kUnitSamples, a function of the spec alone.
+void size_units(Pass& pass, std::size_t pixels) {
+  const std::uint64_t each = std::max<std::uint64_t>(1, pass.evaluations());
+  pass.tile_pixels = static_cast<int>(std::clamp<std::uint64_t>(kUnitSamples / (each * 64), 1, kTile));
+  const std::uint64_t used = std::min<std::uint64_t>(static_cast<std::uint64_t>(pass.tile_pixels), pixels) * each;
+  const auto batch = static_cast<std::int64_t>(kUnitSamples / used / 64 * 64);
+  pass.batch_replicates = std::min(pass.replicates, std::clamp<std::int64_t>(batch, 64, kMostBatch));
+}
+
+void add_units(Plan& plan, std::size_t index) {
+  Pass& pass = plan.passes[index];
+  const std::size_t pixels = plan.scenes[pass.scene].pixels.size();
+  size_units(pass, pixels);
+  pass.first_unit = plan.units.size();
+  const auto tile = static_cast<std::size_t>(pass.tile_pixels);
+  for (std::int64_t b = 0; b < pass.batches(); ++b) {
+    const std::int64_t first = b * pass.batch_replicates;
+    for (std::size_t p = 0; p < pixels; p += tile) {
+      plan.units.push_back(
+          {index, p, std::min(tile, pixels - p), first, std::min(pass.batch_replicates, pass.replicates - first)});
+    }
+  }
+}
+
+// The pass that an estimator's cells share, made if it is not there.
+std::size_t pass_for(Plan& plan, const Pass& wanted) {
+  for (std::size_t p = 0; p < plan.passes.size(); ++p) {
+    const Pass& pass = plan.passes[p];
+    if (pass.scene == wanted.scene && pass.precision == wanted.precision && pass.sampler == wanted.sampler &&
+        pass.allocation == wanted.allocation && pass.samples == wanted.samples) {
+      return p;
+    }
+  }
+  plan.passes.push_back(wanted);
+  return plan.passes.size() - 1;
+}
+
+void note_sharing(Plan& plan) {
+  for (const Pass& pass : plan.passes) {
+    if (pass.estimators.size() > 1) {
+      std::vector<std::string> names;
+      for (const std::size_t e : pass.estimators) names.push_back(plan.scenes[pass.scene].estimators[e].name);
+      plan.skips.push_back(fmt::format("{}, {}, {}: {} share one pass over the same samples",
+                                       plan.scenes[pass.scene].name, pass.sampler, to_string(pass.precision),
+                                       joined(names)));
+    }
+    if (pass.sequence && pass.samples.size() > 1) {
+      plan.skips.push_back(fmt::format("{}, {}, {}: a sequence, so N = {} … {} are prefixes of one pass to {}",
+                                       plan.scenes[pass.scene].name, pass.sampler, to_string(pass.precision),
+                                       pass.samples.front(), pass.samples[pass.samples.size() - 2],
+                                       pass.samples.back()));
+    }
+  }
+}
+
+}  // namespace
+
+std::uint64_t Pass::evaluations() const {
+  return sequence ? samples.back() : std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
+}
+
+double Plan::evaluations() const {
+  double sum = 0;
+  for (const Unit& unit : units) {
+    sum += static_cast<double>(passes[unit.pass].evaluations()) * static_cast<double>(unit.pixel_count) *
+           static_cast<double>(unit.replicate_count);
+  }
+  return sum;
+}
+
+std::string cell_name(const Plan& plan, const Cell& cell) {
+  return fmt::format("{},{},{},{},{}", plan.scenes[cell.scene].name,
+                     plan.scenes[cell.scene].estimators[cell.estimator].name, cell.sampler, to_string(cell.precision),
+                     cell.samples);
+}
+
+Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
+  Plan plan;
+  for (const auto& name : spec.scenes) plan.scenes.push_back(plan_scene(spec, catalogue, name, plan));
+  std::vector<std::unique_ptr<Sampler>> samplers;
+  for (const auto& name : spec.samplers)
+    samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));
+
+  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
+    const PlannedScene& scene = plan.scenes[s];
+    const bool whole = scene.pixels.size() == static_cast<std::size_t>(scene.source->pixels());
+    for (const Precision precision : spec.precision) {
+      for (std::size_t e = 0; e < scene.estimators.size(); ++e) {
+        for (const auto& sampler : samplers) {
+          const SamplerInfo& info = sampler->info();
+          const Allocation& allocation = scene.estimators[e].allocation;
+          const Layout layout = allocation.layout(scene.source->techniques());
+          if (layout.dims() > info.max_dims) {
+            fail_at(spec, "samplers",
+                    fmt::format("sampler '{}' has {} dimensions; '{}' on scene '{}' takes {}", info.name, info.max_dims,
+                                scene.estimators[e].name, scene.name, layout.dims()));
+          }
+          Pass pass;
+          pass.scene = s;
+          pass.precision = precision;
+          pass.sampler = info.name;
+          pass.sequence = info.sequence;
+          pass.randomised = info.randomised;
+          pass.allocation = allocation;
+          pass.samples = legal_counts(spec, scene.estimators[e], *sampler, layout, plan);
+          pass.replicates = info.randomised ? spec.replicates : 1;
+          pass.key = stream_key(spec.seed, info.name, "run");
+          if (pass.samples.empty()) continue;
+          const std::size_t index = pass_for(plan, pass);
+          auto& sharing = plan.passes[index].estimators;
+          sharing.push_back(e);
+          for (std::size_t n = 0; n < pass.samples.size(); ++n) {
+            const bool image =
+                whole && std::find(spec.images.begin(), spec.images.end(), pass.samples[n]) != spec.images.end();
+            plan.cells.push_back({s, e, info.name, precision, pass.samples[n], index, sharing.size() - 1, n, image});
+          }
+        }
+      }
+    }
+  }
+  if (plan.cells.empty())
+    fail_at(spec, "samples", "no sample count of the range is legal for any estimator and sampler: nothing to measure");
+  for (std::size_t p = 0; p < plan.passes.size(); ++p) add_units(plan, p);
+  note_sharing(plan);
+  std::vector<std::string> unique;
+  for (auto& line : plan.skips) {
+    if (std::find(unique.begin(), unique.end(), line) == unique.end()) unique.push_back(std::move(line));
+  }
+  plan.skips = std::move(unique);
+  return plan;
+}
+
+}  // namespace halfslope

@@ -1,0 +1,77 @@
+// What will be done, decided before the first sample: cells, the passes that fill them, and what is skipped and why.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/integral.h"
+#include "core/random.h"
+#include "estimators/estimator.h"
+#include "experiments/catalogue.h"
+#include "experiments/spec.h"
+
+namespace halfslope {
+
+struct PlannedScene {
+  std::string name;
+  std::shared_ptr<const IntegralSource> source;
+  std::vector<int> pixels;  ///< the chosen ones, ascending; indices into the full image
+  std::vector<Estimator> estimators;
+};
+
+/// A run over points that several cells share: one scene, precision, sampler and allocation; every heuristic and N.
+struct Pass {
+  std::size_t scene = 0;
+  Precision precision = Precision::kF32;
+  std::string sampler;
+  bool sequence = false, randomised = true;
+  Allocation allocation;
+  std::vector<std::size_t> estimators;  ///< indices into the scene's
+  std::vector<std::uint64_t> samples;   ///< N, ascending, all legal
+  std::int64_t replicates = 1;
+  StreamKey key;
+  int tile_pixels = 256;
+  std::int64_t batch_replicates = 64;
+  std::uint64_t first_unit = 0;  ///< the number of its first unit in the plan
+
+  std::int64_t batches() const { return (replicates + batch_replicates - 1) / batch_replicates; }
+  /// Integrand evaluations that one replicate of one pixel takes.
+  std::uint64_t evaluations() const;
+};
+
+/// The smallest piece of work: a tile of a pass's pixels and a batch of its replicates.
+struct Unit {
+  std::size_t pass;
+  std::size_t first_pixel, pixel_count;  ///< positions in the scene's `pixels`
+  std::int64_t first_replicate, replicate_count;
+};
+
+/// A row of convergence.csv: where its numbers are found.
+struct Cell {
+  std::size_t scene, estimator;
+  std::string sampler;
+  Precision precision;
+  std::uint64_t samples;
+  std::size_t pass, heuristic, n;  ///< the pass, the estimator's place in it, and N's
+  bool image = false;              ///< an EXR is written
+};
+
+struct Plan {
+  std::vector<PlannedScene> scenes;
+  std::vector<Pass> passes;
+  std::vector<Unit> units;
+  std::vector<Cell> cells;         ///< in the order of the tables
+  std::vector<std::string> skips;  ///< what is not done, and why
+  double evaluations() const;      ///< integrand evaluations of all units
+};
+
+/// Resolves names and splits the work. Throws Error for names that are not in the catalogue (naming the nearest),
+/// techniques that a scene lacks, N that a sampler cannot take (naming the legal neighbours).
+Plan make_plan(const Spec& spec, const Catalogue& catalogue);
+
+/// "aligned-phong-cap:n=10,alpha=0.05,balance,halton-owen,f64,64": a cell in messages, and what seeds its bootstrap.
+std::string cell_name(const Plan& plan, const Cell& cell);
+
+}  // namespace halfslope

@@ -1,0 +1,274 @@
+#include "experiments/reference.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "analysis/compensated_sum.h"
+#include "core/atomic_file.h"
+#include "core/error.h"
+#include "core/kernel_library.h"
+#include "core/version.h"
+#include "estimators/pass_evaluator.h"
+#include "experiments/bytes.h"
+#include "experiments/hash64.h"
+#include "experiments/interrupt.h"
+#include "experiments/progress.h"
+
+namespace halfslope {
+namespace {
+
+constexpr std::int64_t kFirstReplicates = 16;
+constexpr std::size_t kTile = 16;
+
+/// A reference in the making: the moments over replicates of every integral, at N and at the smaller N it will judge.
+struct State {
+  std::vector<Moments> full, compared;
+  std::vector<double> replicate_sums;  ///< Σ over integrals, a number for each replicate
+
+  std::int64_t replicates() const { return static_cast<std::int64_t>(replicate_sums.size()); }
+};
+
+double mean_variance(const std::vector<Moments>& moments) {
+  CompensatedSum sum;
+  for (const Moments& m : moments) sum.add(m.variance());
+  return sum.value() / static_cast<double>(moments.size());
+}
+
+// √ of the mean over integrals of (standard error / value)²; integrals without spread are exact.
+double relative_error(const std::vector<Moments>& moments) {
+  CompensatedSum sum;
+  std::size_t uncertain = 0;
+  for (const Moments& m : moments) {
+    if (!(m.central2 > 0)) continue;
+    const double ratio = m.standard_error() / m.mean;
+    sum.add(ratio * ratio);
+    ++uncertain;
+  }
+  return uncertain > 0 ? std::sqrt(sum.value() / static_cast<double>(uncertain)) : 0;
+}
+
+class Renderer {
+ public:
+  Renderer(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
+           const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers)
+      : source_(source), name_(name), pixels_(pixels), options_(options), samplers_(samplers) {
+    for (std::size_t i = 0; i < source.techniques().size(); ++i) {
+      allocation_.techniques.push_back(static_cast<int>(i));
+      allocation_.counts.push_back(1);
+    }
+    const auto round = static_cast<std::uint64_t>(allocation_.round());
+    rounds_ = {std::max<std::uint64_t>(1, goal.compare_samples / round),
+               std::max<std::uint64_t>(2, goal.samples / round)};
+    if (rounds_[0] >= rounds_[1]) rounds_[0] = rounds_[1] / 2;
+    key_text_ = fmt::format("halfslope reference 1\n{}\n{}\nrounds {} {}\npixels", isa_class(active_isa()),
+                            source.fingerprint(), rounds_[0], rounds_[1]);
+    for (const int pixel : pixels) key_text_ += fmt::format(" {}", pixel);
+  }
+
+  std::uint64_t samples() const { return rounds_[1] * static_cast<std::uint64_t>(allocation_.round()); }
+
+  /// Brings the state to `replicates`, from the cache if it is there.
+  void extend(State& state, std::int64_t replicates) {
+    if (load(state, replicates)) return;
+    render(state, replicates);
+    save(state);
+  }
+
+ private:
+  void render(State& state, std::int64_t replicates);
+  std::filesystem::path file(std::int64_t replicates) const;
+  std::string full_key(std::int64_t replicates) const {
+    return fmt::format("{}\nreplicates {}\n", key_text_, replicates);
+  }
+  bool load(State& state, std::int64_t replicates) const;
+  void save(const State& state) const;
+
+  const IntegralSource& source_;
+  const std::string& name_;
+  const std::vector<int>& pixels_;
+  const ReferenceOptions& options_;
+  const SamplerCatalogue& samplers_;
+  Allocation allocation_;
+  std::vector<std::uint64_t> rounds_;
+  std::string key_text_;
+};
+
+void Renderer::render(State& state, std::int64_t replicates) {
+  const auto channels = static_cast<std::size_t>(source_.channels());
+  const std::size_t tiles = (pixels_.size() + kTile - 1) / kTile;
+  const std::int64_t first = state.replicates(), more = replicates - first;
+  state.full.resize(pixels_.size() * channels);
+  state.compared.resize(pixels_.size() * channels);
+  std::vector<double> tile_sums(tiles * static_cast<std::size_t>(more), 0.0);
+  const StreamKey key = stream_key(0, "halton-owen", "reference");
+  Progress progress(name_ + ": reference",
+                    static_cast<double>(samples()) * static_cast<double>(more) * static_cast<double>(pixels_.size()),
+                    options_.quiet);
+  std::atomic<bool> stop = false;
+  const auto tile = [&](std::size_t index) {
+    if (stop) return;
+    PassEvaluator<double> evaluator(
+        samplers_.make("halton-owen"), source_.techniques(), allocation_,
+        {{allocation_.techniques.size() == 1 ? HeuristicKind::kSingle : HeuristicKind::kBalance, 0}}, rounds_,
+        source_.channels());
+    std::vector<double> values(2 * channels * static_cast<std::size_t>(more));
+    const auto row = [&](std::size_t n, std::size_t c) {
+      return values.data() + (n * channels + c) * static_cast<std::size_t>(more);
+    };
+    for (std::size_t p = index * kTile; p < std::min(pixels_.size(), (index + 1) * kTile); ++p) {
+      const PixelIntegral pixel = source_.pixel(pixels_[p]);
+      for (std::int64_t r = 0; r < more; r += kLanes) {
+        if (interrupted()) stop = true;
+        if (stop) return;
+        if (pixel.integral) {
+          evaluator.run(*pixel.integral, key, static_cast<std::uint32_t>(pixels_[p]),
+                        static_cast<std::uint32_t>(first + r));
+        }
+        for (std::size_t n = 0; n < 2; ++n) {
+          for (std::size_t c = 0; c < channels; ++c) {
+            const double* in = pixel.integral ? evaluator.estimates(0, n, static_cast<int>(c)) : nullptr;
+            for (std::int64_t l = 0; l < kLanes; ++l) row(n, c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
+          }
+        }
+        progress.advance(static_cast<double>(samples()) * kLanes);
+      }
+      for (std::size_t c = 0; c < channels; ++c) {
+        state.compared[p * channels + c].add(std::span<const double>(row(0, c), static_cast<std::size_t>(more)));
+        state.full[p * channels + c].add(std::span<const double>(row(1, c), static_cast<std::size_t>(more)));
+        for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r)
+          tile_sums[index * static_cast<std::size_t>(more) + r] += row(1, c)[r];
+      }
+    }
+  };
+  tbb::task_arena arena(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic);
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, tiles, tile, tbb::simple_partitioner()); });
+  if (stop) fail(ExitCode::kInterrupted, "interrupted while the reference was rendered; run again to start it anew");
+  progress.finish();
+  for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r) {
+    CompensatedSum sum;
+    for (std::size_t t = 0; t < tiles; ++t) sum.add(tile_sums[t * static_cast<std::size_t>(more) + r]);
+    state.replicate_sums.push_back(sum.value());
+  }
+}
+
+std::filesystem::path Renderer::file(std::int64_t replicates) const {
+  const std::string key = full_key(replicates);
+  return options_.cache / fmt::format("reference-{:016x}", hash64(std::as_bytes(std::span(key))));
+}
+
+bool Renderer::load(State& state, std::int64_t replicates) const {
+  if (options_.cache.empty() || !std::filesystem::exists(file(replicates))) return false;
+  try {
+    const std::string text = read_file(file(replicates));
+    std::span<const std::byte> cursor = std::as_bytes(std::span(text));
+    const auto checksum = take_bytes<std::uint64_t>(cursor);
+    if (checksum != hash64(cursor)) return false;
+    const std::string key = full_key(replicates);
+    const auto found = take_bytes<char>(cursor, std::min(cursor.size(), key.size()));
+    if (!std::equal(found.begin(), found.end(), key.begin(), key.end())) return false;
+    const std::size_t integrals = pixels_.size() * static_cast<std::size_t>(source_.channels());
+    state.full = take_bytes<Moments>(cursor, integrals);
+    state.compared = take_bytes<Moments>(cursor, integrals);
+    state.replicate_sums = take_bytes<double>(cursor, static_cast<std::size_t>(replicates));
+    return true;
+  } catch (const Error&) {
+    return false;  // a damaged or unreadable cache is no cache: render again
+  }
+}
+
+void Renderer::save(const State& state) const {
+  if (options_.cache.empty()) return;
+  std::vector<std::byte> body;
+  const std::string key = full_key(state.replicates());
+  append_bytes<char>(body, std::span(key));
+  append_bytes<Moments>(body, std::span(state.full));
+  append_bytes<Moments>(body, std::span(state.compared));
+  append_bytes<double>(body, std::span(state.replicate_sums));
+  std::vector<std::byte> bytes;
+  append_bytes(bytes, hash64(body));
+  bytes.insert(bytes.end(), body.begin(), body.end());
+  try {
+    std::filesystem::create_directories(options_.cache);
+    write_file_atomically(file(state.replicates()), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  } catch (const std::exception& error) {
+    if (!options_.quiet) fmt::print(stderr, "halfslope: the reference is not kept for later: {}\n", error.what());
+  }
+}
+
+Reference closed_form_reference(const IntegralSource& source, const std::vector<int>& pixels) {
+  Reference reference;
+  reference.origin = "closed form";
+  CompensatedSum sum;
+  for (const int pixel : pixels) {
+    const Color exact = *source.closed_form(pixel);
+    for (int c = 0; c < source.channels(); ++c) {
+      reference.value.push_back(exact[static_cast<std::size_t>(c)]);
+      sum.add(exact[static_cast<std::size_t>(c)]);
+    }
+  }
+  reference.variance.assign(reference.value.size(), 0.0);
+  reference.mean = sum.value() / static_cast<double>(reference.value.size());
+  return reference;
+}
+
+}  // namespace
+
+Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
+                         const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers) {
+  if (source.closed_form(pixels.front())) return closed_form_reference(source, pixels);
+  Renderer renderer(source, name, pixels, goal, options, samplers);
+  State state;
+  double share = 0, relative = 0;
+  std::int64_t replicates = kFirstReplicates;
+  for (;; replicates *= 2) {
+    renderer.extend(state, replicates);
+    const double own = mean_variance(state.full) / static_cast<double>(replicates);
+    const double expected = mean_variance(state.compared);
+    share = expected > 0 ? own / expected : 0;
+    relative = relative_error(state.full);
+    if ((goal.error_share == 0 || share <= goal.error_share) &&
+        (goal.relative_error == 0 || relative <= goal.relative_error))
+      break;
+    if (2 * replicates > goal.most_replicates) {
+      fail(ExitCode::kBadInput,
+           "scene '{}': {} replicates of N = {} leave the reference with {} times the variance that its errors allow, "
+           "and "
+           "a relative error of {}; ask for fewer samples, or give `halfslope reference` more of them",
+           name, replicates, renderer.samples(), goal.error_share > 0 ? share / goal.error_share : share, relative);
+    }
+  }
+  Reference reference;
+  reference.samples = renderer.samples();
+  reference.replicates = replicates;
+  reference.origin =
+      fmt::format("balance heuristic, halton-owen, f64, {} replicates of N = {}", replicates, reference.samples);
+  for (const Moments& m : state.full) {
+    reference.value.push_back(m.mean);
+    reference.variance.push_back(m.variance() / static_cast<double>(replicates));
+  }
+  reference.mean_variance = mean_variance(state.full) / static_cast<double>(replicates);
+  Moments means;
+  std::vector<double> image_means;
+  for (const double sum : state.replicate_sums) image_means.push_back(sum / static_cast<double>(state.full.size()));
+  means.add(std::span<const double>(image_means));
+  reference.mean = means.mean;
+  reference.mean_se = means.standard_error();
+  return reference;
+}
+
+std::filesystem::path default_cache() {
+  if (const char* folder = std::getenv("HALFSLOPE_CACHE")) return folder;
+  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
+    return std::filesystem::path(folder) / "halfslope";
+  if (const char* home = std::getenv("HOME"); home && *home)
+    return std::filesystem::path(home) / ".cache" / "halfslope";
+  return {};
+}
+
+}  // namespace halfslope

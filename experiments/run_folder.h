@@ -1,0 +1,27 @@
+// The folder of a run: made if need be, and ours alone while we are at work in it.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "experiments/file_descriptor.h"
+
+namespace halfslope {
+
+/// Holds an exclusive lock on the folder's file `.lock` until it is destroyed. The kernel drops the lock with the
+/// process, however that ends, so a lock never outlives a run.
+class RunFolder {
+ public:
+  /// Makes the folder and its parents. Error(kIo) if it cannot be made or written to, or, at once and with nothing
+  /// changed, if another run is at work in it.
+  explicit RunFolder(const std::filesystem::path& folder);
+
+  const std::filesystem::path& path() const { return folder_; }
+  std::filesystem::path path(std::string_view name) const { return folder_ / name; }
+
+ private:
+  std::filesystem::path folder_;
+  FileDescriptor lock_;
+};
+
+}  // namespace halfslope

@@ -1,0 +1,67 @@
+// What a user asks for: an experiment, from a TOML file, from flags, or from both.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace halfslope {
+
+enum class Precision : std::uint8_t { kF32, kF64 };
+std::string to_string(Precision precision);
+
+/// The sample counts asked for. Inside a range the counts that a sampler cannot take are skipped, and the plan says so;
+/// in a list they are errors.
+struct SampleCounts {
+  std::vector<std::uint64_t> counts;  ///< ascending, no duplicates, each ≥ 1
+  bool is_range = false;
+};
+
+/// A validated experiment. Names are checked against the catalogues by the plan, which knows them.
+struct Spec {
+  std::string name = "run";
+  std::vector<std::string> scenes;      ///< catalogue names or paths of Mitsuba .xml files; key `scene`
+  std::vector<std::string> estimators;  ///< default {"mean"} is decided by the plan where this is empty
+  std::vector<std::string> samplers;
+  SampleCounts samples;
+  std::int64_t replicates = 64;
+  std::uint64_t seed = 1;
+  std::optional<std::array<int, 2>> resolution;  ///< the sensor's own where absent
+  std::optional<std::int64_t> pixels;            ///< a fixed, stratified choice of so many; all where absent
+  std::vector<std::uint64_t> images;             ///< sample counts to write EXRs for
+  std::vector<Precision> precision = {Precision::kF32};
+
+  /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
+  std::map<std::string, std::string> places;
+  /// Exit code of an error about a key: 2 where a flag set it, 3 where a file did.
+  std::map<std::string, int> codes;
+};
+
+/// Reads an experiment; `file` is its name in messages. Errors are Error(kBadInput) and begin with file:line:column.
+Spec parse_spec_toml(std::string_view text, const std::string& file);
+
+/// The same from a path; Error(kBadInput) if the file is missing or unreadable.
+Spec load_spec(const std::filesystem::path& path);
+
+/// Sets a key as the flag --KEY VALUE does: the value replaces the file's, lists are separated by commas (a comma
+/// before `identifier=` continues a name with parameters), a resolution is 96,64 or 96x64. Errors are Error(kUsage) and
+/// begin with "--key: ".
+void apply_flag(Spec& spec, std::string_view key, std::string_view value);
+
+/// Checks what no single key can show: the keys without a default are there, and images ⊂ samples. Error(kUsage) where
+/// flags are at fault, Error(kBadInput) where the file is.
+void validate(const Spec& spec);
+
+/// Everything that determines the numbers of a run, as canonical JSON (sorted keys, no spaces): no name, no places, no
+/// output folder, no threads.
+std::string canonical_json(const Spec& spec);
+
+/// 16 hexadecimal digits that stand for canonical_json(spec).
+std::string spec_hash(const Spec& spec);
+
+}  // namespace halfslope

@@ -1,0 +1,21 @@
+// The files of a run folder, as text; docs/columns.md says what each column means.
+#pragma once
+
+#include <string>
+
+#include "experiments/plan.h"
+#include "experiments/results.h"
+
+namespace halfslope {
+
+std::string convergence_csv(const Plan& plan, const Results& results);
+std::string replicates_csv(const Plan& plan, const Results& results);
+std::string rates_csv(const Plan& plan, const Results& results);
+/// Empty where no scene has parts.
+std::string regions_csv(const Plan& plan, const Results& results);
+
+/// What a person wants to see first: the largest N side by side, rates, and where an image has parts, which estimator
+/// wins where.
+std::string summary(const Plan& plan, const Results& results);
+
+}  // namespace halfslope

@@ -1,0 +1,56 @@
+#include "samplers/catalogue.h"
+
+#include "core/assertion.h"
+#include "core/error.h"
+#include "samplers/halton_owen.h"
+#include "samplers/independent.h"
+#include "samplers/n_rooks.h"
+#include "samplers/stratified.h"
+
+namespace halfslope {
+
+// The menu. To add a sampler: derive from Sampler in a file of its own, say in info() what it is, and add its maker
+// here (an embedder calls add() instead, and touches nothing of ours).
+SamplerCatalogue SamplerCatalogue::built_in() {
+  SamplerCatalogue catalogue;
+  catalogue.add(make_independent);
+  catalogue.add(make_stratified);
+  catalogue.add(make_n_rooks);
+  catalogue.add(make_halton_owen);
+  return catalogue;
+}
+
+void SamplerCatalogue::add(Make make) {
+  SamplerInfo info = make()->info();
+  assert_equal(has(info.name), false, "a sampler of that name");
+  entries_.push_back({std::move(info), std::move(make)});
+}
+
+bool SamplerCatalogue::has(const std::string& name) const {
+  for (const Entry& entry : entries_) {
+    if (entry.info.name == name) return true;
+  }
+  return false;
+}
+
+std::unique_ptr<Sampler> SamplerCatalogue::make(const std::string& name) const {
+  for (const Entry& entry : entries_) {
+    if (entry.info.name == name) return entry.make();
+  }
+  fail(ExitCode::kBadInput, "there is no sampler '{}'{}; `halfslope list samplers` names them all", name,
+       did_you_mean(name, names()));
+}
+
+std::vector<SamplerInfo> SamplerCatalogue::list() const {
+  std::vector<SamplerInfo> list;
+  for (const Entry& entry : entries_) list.push_back(entry.info);
+  return list;
+}
+
+std::vector<std::string> SamplerCatalogue::names() const {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries_) names.push_back(entry.info.name);
+  return names;
+}
+
+}  // namespace halfslope

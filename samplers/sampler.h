@@ -1,0 +1,64 @@
+// What a sampler is: it fills blocks of points, and everything downstream only reads them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/layout.h"
+#include "core/point_block.h"
+#include "core/random.h"
+
+namespace halfslope {
+
+/// What a sampler declares of itself.
+struct SamplerInfo {
+  std::string name, description, reference;
+  /// A sequence is good at every prefix, so one pass gives every N on the way; a set is made for one N.
+  bool sequence = false;
+  /// A deterministic sampler has one replicate, and the same points in every pixel.
+  bool randomised = true;
+  /// Each point's marginal is uniform, so estimates are unbiased.
+  bool unbiased = true;
+  int max_dims = 0;
+  std::uint64_t max_count = std::uint64_t{1} << 31;
+  /// The rate that theory gives for any square-integrable integrand, where there is one.
+  std::optional<double> rate = std::nullopt;
+};
+
+/// The nearest legal counts around an illegal one.
+struct LegalNeighbours {
+  std::optional<std::uint64_t> below, above;
+};
+
+/// Which points to prepare: `count` points whose dimensions are grouped by `layout`, for replicates `replicate` to
+/// `replicate` + kLanes − 1 of the pixel.
+struct PointRequest {
+  std::uint64_t count = 0;
+  const Layout* layout = nullptr;
+  StreamKey key;
+  std::uint32_t pixel = 0, replicate = 0;
+  bool low_words = false;  ///< for binary64
+};
+
+/// Makes points, a block at a time. Not shared between threads; each asks its catalogue for one.
+class Sampler {
+ public:
+  virtual ~Sampler() = default;
+  virtual const SamplerInfo& info() const = 0;
+  /// Whether `count` points of this layout exist; if not, the legal counts next to it.
+  virtual std::optional<LegalNeighbours> illegal(std::uint64_t count, const Layout& layout) const {
+    const std::uint64_t most = info().max_count;
+    (void)layout;
+    if (count == 0) return LegalNeighbours{std::nullopt, 1};
+    if (count > most) return LegalNeighbours{most, std::nullopt};
+    return std::nullopt;
+  }
+  /// Makes ready; cheap, since it is called for every pixel and group of replicates.
+  virtual void prepare(const PointRequest& request) = 0;
+  /// Fills points [begin, begin + block.samples()) of what was prepared, in any order of calls. `block` has the
+  /// layout's dims; low words are filled where it has them.
+  virtual void fill(std::uint64_t begin, PointBlock& block) = 0;
+};
+
+}  // namespace halfslope

@@ -1,0 +1,60 @@
+#include "samplers/strata.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace halfslope {
+
+void Strata::reset(std::uint64_t count) {
+  if (count == count_) return;
+  count_ = count;
+  if (count > kTabled) return;
+  edges_.resize(count + 1);
+  for (std::uint64_t i = 0; i <= count; ++i) edges_[i] = exact_edge(i);
+}
+
+void LanePermutation::prepare(const WordSource& words, int dim, std::uint64_t count) {
+  count_ = count;
+  if (count > kShuffled) {
+    words.fill(Draw::kPermutation, dim, 0, 4, keys_);
+    return;
+  }
+  table_.resize(kShuffled * kLanes);
+  constexpr std::uint64_t kChunk = 64;
+  words_.resize(kChunk * kLanes);
+  for (std::uint64_t first = 0; first < count; first += kChunk) {
+    const auto chunk = static_cast<int>(std::min(kChunk, count - first));
+    words.fill(Draw::kPermutation, dim, first, chunk, words_.data());
+    for (int lane = 0; lane < kLanes; ++lane) {
+      std::uint16_t* p = table_.data() + static_cast<std::size_t>(lane) * kShuffled;
+      // The shuffle from the inside out: element i goes to a uniform place j ≤ i, and what was there moves to i.
+      for (std::uint64_t s = 0; s < static_cast<std::uint64_t>(chunk); ++s) {
+        const std::uint64_t i = first + s;
+        const std::uint64_t j = (words_[s * kLanes + static_cast<std::uint64_t>(lane)] * (i + 1)) >> 32;
+        p[i] = p[j];
+        p[j] = static_cast<std::uint16_t>(i);
+      }
+    }
+  }
+}
+
+std::uint64_t LanePermutation::walk(std::uint64_t index, int lane) const {
+  const int bits = static_cast<int>(std::bit_width(count_ - 1));
+  const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+  const int half = (bits + 1) / 2;
+  std::uint64_t x = index;
+  do {
+    // Each round adds a key, multiplies by an odd keyed number and folds the upper half down: all invertible on `bits`.
+    for (int round = 0; round < 4; ++round) {
+      const std::uint32_t key = keys_[round * kLanes + lane];
+      x = (x + key) & mask;
+      x = (x * ((key << 1 | 1u) ^ 0x6c50b47cu)) & mask;
+      x ^= x >> half;
+      x = (x * 0x9e3779b1u) & mask;
+      x ^= x >> (half + 1);
+    }
+  } while (x >= count_);
+  return x;
+}
+
+}  // namespace halfslope

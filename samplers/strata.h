@@ -1,0 +1,56 @@
+// Equal strata of [0, 1) in 32-bit fixed point, and shuffles of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "samplers/word_source.h"
+
+namespace halfslope {
+
+/// Splits [0, 1) into `count` strata whose edges are rounded up to multiples of 2⁻³², so that a point drawn inside a
+/// stratum stays inside it to the last bit.
+class Strata {
+ public:
+  /// 1 ≤ count ≤ 2³¹; costs nothing when the count is the same as last time.
+  void reset(std::uint64_t count);
+  /// The high word at fraction `word` · 2⁻³² of stratum `index` < count.
+  std::uint32_t place(std::uint64_t index, std::uint32_t word) const {
+    const std::uint64_t lower = edge(index), upper = edge(index + 1);
+    return static_cast<std::uint32_t>(lower + (((upper - lower) * word) >> 32));
+  }
+
+ private:
+  static constexpr std::uint64_t kTabled = 4096;  // a division would cost more than the rest of a coordinate
+  std::uint64_t edge(std::uint64_t index) const { return count_ <= kTabled ? edges_[index] : exact_edge(index); }
+  std::uint64_t exact_edge(std::uint64_t index) const { return ((index << 32) + count_ - 1) / count_; }
+
+  std::uint64_t count_ = 0;
+  std::vector<std::uint64_t> edges_;
+};
+
+/// A uniformly random permutation of 0 … count − 1 in each lane, from words of Draw::kPermutation.
+///
+/// Up to kShuffled elements by Fisher and Yates's shuffle, exactly uniform and held in memory. Above, where no
+/// experiment could tell the difference and memory must not grow, by a keyed bijection of the next power of two that is
+/// walked until it falls inside (A. Kensler, "Correlated multi-jittered sampling", 2013, §4, with four keyed rounds).
+class LanePermutation {
+ public:
+  static constexpr std::uint64_t kShuffled = 4096;
+
+  void prepare(const WordSource& words, int dim, std::uint64_t count);
+  std::uint64_t at(std::uint64_t index, int lane) const {
+    if (count_ <= kShuffled) return table_[static_cast<std::size_t>(lane) * kShuffled + index];
+    return walk(index, lane);
+  }
+
+ private:
+  std::uint64_t walk(std::uint64_t index, int lane) const;
+
+  std::uint64_t count_ = 0;
+  std::vector<std::uint16_t> table_;  // [lane][index]
+  std::vector<std::uint32_t> words_;
+  std::uint32_t keys_[4 * kLanes] = {};
+};
+
+}  // namespace halfslope

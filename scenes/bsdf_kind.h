@@ -1,0 +1,9 @@
+#pragma once
+
+#include <cstdint>
+
+namespace halfslope {
+
+enum class BsdfKind : std::uint8_t { kDiffuse, kRoughConductor };
+
+}  // namespace halfslope

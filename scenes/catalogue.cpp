@@ -1,0 +1,37 @@
+#include "scenes/catalogue.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "scenes/loader.h"
+#include "scenes/shipped_files.h"
+
+namespace halfslope {
+
+// To add a scene: put NAME.xml into this folder (the build compiles it in) and its entry here.
+std::vector<SceneEntry> rendered_scenes() {
+  return {
+      {"veach-mis", "four glossy plates, from smooth to rough, reflect four spheres, from small to large",
+       "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
+  };
+}
+
+std::optional<std::string_view> shipped_scene_text(std::string_view name) {
+  for (const ShippedFile& file : shipped_files()) {
+    if (file.name == name) return file.text;
+  }
+  return std::nullopt;
+}
+
+Scene load_catalogue_scene(std::string_view name) {
+  if (const auto text = shipped_scene_text(name)) return parse_scene(*text, fmt::format("{}.xml", name));
+  std::vector<std::string> names;
+  std::string allowed;
+  for (const SceneEntry& entry : rendered_scenes()) {
+    names.push_back(entry.name);
+    allowed += (allowed.empty() ? "" : ", ") + entry.name;
+  }
+  fail(ExitCode::kBadInput, "unknown scene '{}', allowed: {}{}", name, allowed, did_you_mean(name, names));
+}
+
+}  // namespace halfslope

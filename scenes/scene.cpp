@@ -1,0 +1,109 @@
+#include "scenes/scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/assertion.h"
+
+namespace halfslope {
+namespace {
+
+constexpr double kNoHit = std::numeric_limits<double>::infinity();
+
+/// The smallest t > 0 with |o + t d − c| = R, or kNoHit.
+///
+/// With b = (o − c)·d and l = (o − c) − b d, the vector to the line's closest approach, the half chord is √(R² − |l|²):
+/// b² − |o − c|² + R² would cancel for small or distant spheres (Haines et al., "Precision Improvements for Ray/Sphere
+/// Intersection", Ray Tracing Gems, 2019). The root of the smaller magnitude is the product of both over the other.
+double hit_sphere(const Sphere& sphere, const Ray& ray) {
+  const Vec3 from_center = ray.origin - sphere.center;
+  const double b = from_center.dot(ray.direction);
+  const double closest = (from_center - b * ray.direction).norm();
+  const double discriminant = (sphere.radius - closest) * (sphere.radius + closest);
+  if (!(discriminant >= 0)) return kNoHit;
+  const double half_chord = std::sqrt(discriminant), distance = from_center.norm();
+  const double product = (distance - sphere.radius) * (distance + sphere.radius);
+  const double q = b < 0 ? -b + half_chord : -b - half_chord;
+  const double other = q != 0 ? product / q : 0;
+  const double near = std::min(q, other), far = std::max(q, other);
+  return near > 0 ? near : far > 0 ? far : kNoHit;
+}
+
+struct PlanePoint {
+  double distance, a, b;  ///< center + a·half_u + b·half_v
+};
+
+PlanePoint hit_rectangle(const Rectangle& rectangle, const Ray& ray) {
+  const Vec3 to_center = rectangle.center - ray.origin;
+  const double t = rectangle.normal.dot(to_center) / rectangle.normal.dot(ray.direction);
+  if (!(t > 0) || !std::isfinite(t)) return {kNoHit, 0, 0};
+  const Vec3 local = t * ray.direction - to_center;
+  const double a = local.dot(rectangle.half_u) / rectangle.half_u.squaredNorm();
+  const double b = local.dot(rectangle.half_v) / rectangle.half_v.squaredNorm();
+  return {std::abs(a) <= 1 && std::abs(b) <= 1 ? t : kNoHit, a, b};
+}
+
+}  // namespace
+
+Ray Sensor::ray(int x, int y, int image_width, int image_height) const {
+  if (kind == Kind::kRays) {
+    assert_equal(y, 0, "row of a sensor whose rays are given one by one");
+    assert_equal(x, std::clamp(x, 0, static_cast<int>(rays.size()) - 1), "index of a ray");
+    return rays[static_cast<std::size_t>(x)];
+  }
+  assert_equal(x, std::clamp(x, 0, image_width - 1), "column of a pixel");
+  assert_equal(y, std::clamp(y, 0, image_height - 1), "row of a pixel");
+  const double aspect = static_cast<double>(image_width) / image_height;
+  const double tan_half_fov = std::tan(0.5 * fov_degrees * std::numbers::pi / 180);
+  FovAxis axis = fov_axis;
+  if (axis == FovAxis::kSmaller) axis = aspect > 1 ? FovAxis::kY : FovAxis::kX;
+  if (axis == FovAxis::kLarger) axis = aspect > 1 ? FovAxis::kX : FovAxis::kY;
+  double tan_half_width = tan_half_fov;
+  if (axis == FovAxis::kY) tan_half_width = tan_half_fov * aspect;
+  if (axis == FovAxis::kDiagonal) tan_half_width = tan_half_fov / std::hypot(1, 1 / aspect);
+  const double to_left = (1 - 2 * (x + 0.5) / image_width) * tan_half_width;
+  const double to_top = (1 - 2 * (y + 0.5) / image_height) * tan_half_width / aspect;
+  return {origin, (forward + to_left * left + to_top * up).normalized()};
+}
+
+Hit first_hit(const Scene& scene, const Ray& ray) {
+  Hit hit;
+  double nearest = kNoHit;
+  for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
+    if (const auto* sphere = std::get_if<Sphere>(&scene.primitives[i].shape)) {
+      const double t = hit_sphere(*sphere, ray);
+      if (!(t < nearest)) continue;
+      nearest = t;
+      const Vec3 outward = (ray.origin + t * ray.direction - sphere->center).normalized();
+      hit.position = sphere->center + sphere->radius * outward;
+      hit.normal = sphere->flip_normals ? Vec3(-outward) : outward;
+    } else {
+      const auto& rectangle = std::get<Rectangle>(scene.primitives[i].shape);
+      const PlanePoint point = hit_rectangle(rectangle, ray);
+      if (!(point.distance < nearest)) continue;
+      nearest = point.distance;
+      hit.position = rectangle.center + point.a * rectangle.half_u + point.b * rectangle.half_v;
+      hit.normal = rectangle.normal;
+    }
+    hit.primitive = static_cast<int>(i);
+    hit.distance = nearest;
+    hit.front = ray.direction.dot(hit.normal) < 0;
+  }
+  return hit;
+}
+
+bool is_grey(const Scene& scene) {
+  const auto grey = [](const Rgb& colour) { return colour[0] == colour[1] && colour[1] == colour[2]; };
+  for (const Primitive& primitive : scene.primitives) {
+    const Bsdf& bsdf = primitive.bsdf;
+    if (primitive.emits && !grey(primitive.radiance)) return false;
+    if (!grey(bsdf.reflectance)) return false;
+    const bool has_index = bsdf.kind == BsdfKind::kRoughConductor && !bsdf.unit_fresnel;
+    if (has_index && !(grey(bsdf.eta) && grey(bsdf.k))) return false;
+  }
+  return true;
+}
+
+}  // namespace halfslope
