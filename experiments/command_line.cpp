@@ -126,8 +126,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       app.add_subcommand("reference", "print or render a scene's reference values, with standard errors");
   reference_app->add_option("--scene", reference.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
   reference_app->add_option("--resolution", reference.resolution, "WIDTH,HEIGHT")->type_name("W,H");
-  reference_app->add_option("--samples", reference.samples, "N of each replicate")
-      ->capture_default_str()
+  reference_app
+      ->add_option("--samples", reference.samples, "N of each replicate (default 2^19 up to 64 pixels, else 8192)")
       ->type_name("N");
   reference_app
       ->add_option("--relative-error", reference.relative_error,

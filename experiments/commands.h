@@ -47,7 +47,7 @@ int render_command(const RenderArguments& arguments, const Catalogue& catalogue)
 
 struct ReferenceArguments {
   std::string scene, resolution, out;
-  std::uint64_t samples = 8192;
+  std::optional<std::uint64_t> samples;  ///< default: 2^19 for few pixels, 8192 for an image
   std::optional<double> relative_error;
   std::int64_t most_replicates = 1 << 14;
   int threads = 0;

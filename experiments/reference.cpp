@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::int64_t kFirstReplicates = 16;
 constexpr std::size_t kTile = 16;
+constexpr std::size_t kFewPixels = 256;
 
 /// A reference in the making: the moments over replicates of every integral, at N and at the smaller N it will judge.
 struct State {
@@ -99,60 +100,78 @@ class Renderer {
   std::string key_text_;
 };
 
+/// What one task adds: a tile of pixels over a chunk of replicates.
+struct Piece {
+  std::vector<Moments> full, compared;  ///< of the tile's integrals
+  std::vector<double> sums;             ///< Σ over them, for each replicate of the chunk
+};
+
 void Renderer::render(State& state, std::int64_t replicates) {
   const auto channels = static_cast<std::size_t>(source_.channels());
-  const std::size_t tiles = (pixels_.size() + kTile - 1) / kTile;
   const std::int64_t first = state.replicates(), more = replicates - first;
-  state.full.resize(pixels_.size() * channels);
-  state.compared.resize(pixels_.size() * channels);
-  std::vector<double> tile_sums(tiles * static_cast<std::size_t>(more), 0.0);
+  // Few pixels are split over replicates too, so that every core has work; pieces are joined in their order.
+  const std::size_t chunk = pixels_.size() <= kFewPixels ? kLanes : static_cast<std::size_t>(more);
+  const std::size_t chunks = static_cast<std::size_t>(more) / chunk;
+  const std::size_t tile_pixels = pixels_.size() <= kFewPixels ? 1 : kTile;
+  const std::size_t tiles = (pixels_.size() + tile_pixels - 1) / tile_pixels;
   const StreamKey key = stream_key(0, "halton-owen", "reference");
   Progress progress(name_ + ": reference",
                     static_cast<double>(samples()) * static_cast<double>(more) * static_cast<double>(pixels_.size()),
                     options_.quiet);
   std::atomic<bool> stop = false;
-  const auto tile = [&](std::size_t index) {
-    if (stop) return;
+  std::vector<Piece> pieces(tiles * chunks);
+  const auto work = [&](std::size_t index) {
+    const std::size_t tile = index / chunks, begin = index % chunks * chunk;
     PassEvaluator<double> evaluator(
         samplers_.make("halton-owen"), source_.techniques(), allocation_,
         {{allocation_.techniques.size() == 1 ? HeuristicKind::kSingle : HeuristicKind::kBalance, 0}}, rounds_,
         source_.channels());
-    std::vector<double> values(2 * channels * static_cast<std::size_t>(more));
-    const auto row = [&](std::size_t n, std::size_t c) {
-      return values.data() + (n * channels + c) * static_cast<std::size_t>(more);
-    };
-    for (std::size_t p = index * kTile; p < std::min(pixels_.size(), (index + 1) * kTile); ++p) {
+    Piece& piece = pieces[index];
+    piece.sums.resize(chunk);
+    std::vector<double> values(2 * channels * chunk);
+    const auto row = [&](std::size_t n, std::size_t c) { return values.data() + (n * channels + c) * chunk; };
+    const std::size_t end = std::min(pixels_.size(), (tile + 1) * tile_pixels);
+    for (std::size_t p = tile * tile_pixels; p < end; ++p) {
       const PixelIntegral pixel = source_.pixel(pixels_[p]);
-      for (std::int64_t r = 0; r < more; r += kLanes) {
+      for (std::size_t r = 0; r < chunk; r += kLanes) {
         if (interrupted()) stop = true;
         if (stop) return;
         if (pixel.integral) {
           evaluator.run(*pixel.integral, key, static_cast<std::uint32_t>(pixels_[p]),
-                        static_cast<std::uint32_t>(first + r));
+                        static_cast<std::uint32_t>(static_cast<std::size_t>(first) + begin + r));
         }
         for (std::size_t n = 0; n < 2; ++n) {
           for (std::size_t c = 0; c < channels; ++c) {
             const double* in = pixel.integral ? evaluator.estimates(0, n, static_cast<int>(c)) : nullptr;
-            for (std::int64_t l = 0; l < kLanes; ++l) row(n, c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
+            for (std::size_t l = 0; l < kLanes; ++l) row(n, c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
           }
         }
         progress.advance(static_cast<double>(samples()) * kLanes);
       }
       for (std::size_t c = 0; c < channels; ++c) {
-        state.compared[p * channels + c].add(std::span<const double>(row(0, c), static_cast<std::size_t>(more)));
-        state.full[p * channels + c].add(std::span<const double>(row(1, c), static_cast<std::size_t>(more)));
-        for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r)
-          tile_sums[index * static_cast<std::size_t>(more) + r] += row(1, c)[r];
+        piece.compared.emplace_back().add(std::span<const double>(row(0, c), chunk));
+        piece.full.emplace_back().add(std::span<const double>(row(1, c), chunk));
+        for (std::size_t r = 0; r < chunk; ++r) piece.sums[r] += row(1, c)[r];
       }
     }
   };
   tbb::task_arena arena(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, tiles, tile, tbb::simple_partitioner()); });
+  arena.execute([&] { tbb::parallel_for(std::size_t{0}, pieces.size(), work, tbb::simple_partitioner()); });
   if (stop) fail(ExitCode::kInterrupted, "interrupted while the reference was rendered; run again to start it anew");
   progress.finish();
+
+  state.full.resize(pixels_.size() * channels);
+  state.compared.resize(pixels_.size() * channels);
+  for (std::size_t index = 0; index < pieces.size(); ++index) {
+    const std::size_t offset = index / chunks * tile_pixels * channels;
+    for (std::size_t i = 0; i < pieces[index].full.size(); ++i) {
+      state.full[offset + i].merge(pieces[index].full[i]);
+      state.compared[offset + i].merge(pieces[index].compared[i]);
+    }
+  }
   for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r) {
     CompensatedSum sum;
-    for (std::size_t t = 0; t < tiles; ++t) sum.add(tile_sums[t * static_cast<std::size_t>(more) + r]);
+    for (std::size_t t = 0; t < tiles; ++t) sum.add(pieces[t * chunks + r / chunk].sums[r % chunk]);
     state.replicate_sums.push_back(sum.value());
   }
 }

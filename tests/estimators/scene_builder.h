@@ -1,0 +1,89 @@
+// Scenes built in code.
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "estimators/direct_lighting.h"
+#include "scenes/scene.h"
+
+namespace halfslope {
+
+inline Rgb grey(double value) { return Rgb::Constant(value); }
+
+/// A shape that neither reflects nor emits.
+inline Primitive sphere(const Vec3& center, double radius, bool flip_normals = false) {
+  Primitive primitive;
+  primitive.shape = Sphere{center, radius, flip_normals};
+  primitive.bsdf.reflectance = Rgb::Zero();
+  return primitive;
+}
+
+/// A shape that neither reflects nor emits; its front is on the side of half_u × half_v.
+inline Primitive rectangle(const Vec3& center, const Vec3& half_u, const Vec3& half_v) {
+  Primitive primitive;
+  primitive.shape = Rectangle{center, half_u, half_v, half_u.cross(half_v).normalized()};
+  primitive.bsdf.reflectance = Rgb::Zero();
+  return primitive;
+}
+
+inline Primitive emitting(Primitive primitive, const Rgb& radiance) {
+  primitive.emits = true;
+  primitive.radiance = radiance;
+  return primitive;
+}
+
+inline Primitive made_of(Primitive primitive, const Bsdf& bsdf) {
+  primitive.bsdf = bsdf;
+  return primitive;
+}
+
+inline Primitive named(Primitive primitive, std::string id) {
+  primitive.id = std::move(id);
+  return primitive;
+}
+
+inline Bsdf diffuse(const Rgb& albedo) {
+  Bsdf bsdf;
+  bsdf.reflectance = albedo;
+  return bsdf;
+}
+
+/// A GGX conductor with F = 1.
+inline Bsdf conductor(double alpha) {
+  Bsdf bsdf;
+  bsdf.kind = BsdfKind::kRoughConductor;
+  bsdf.reflectance = Rgb::Ones();
+  bsdf.alpha = alpha;
+  return bsdf;
+}
+
+inline Bsdf conductor(double alpha, const Rgb& eta, const Rgb& k) {
+  Bsdf bsdf = conductor(alpha);
+  bsdf.unit_fresnel = false;
+  bsdf.eta = eta;
+  bsdf.k = k;
+  return bsdf;
+}
+
+/// The ray from an eye through a point.
+inline Ray looking(const Vec3& eye, const Vec3& at) { return {eye, (at - eye).normalized()}; }
+
+/// A scene with a pixel for each ray.
+inline Scene scene_of(std::vector<Primitive> primitives, std::vector<Ray> rays) {
+  Scene scene;
+  scene.name = "built in a test";
+  scene.primitives = std::move(primitives);
+  scene.sensor.kind = Sensor::Kind::kRays;
+  scene.sensor.rays = std::move(rays);
+  return scene;
+}
+
+inline DirectLighting lighting(Scene scene) {
+  const int pixels = static_cast<int>(scene.sensor.rays.size());
+  return DirectLighting(std::move(scene), pixels, 1);
+}
+
+}  // namespace halfslope
