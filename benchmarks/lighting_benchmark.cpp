@@ -26,7 +26,7 @@ void lighting_pairs(benchmark::State& state, const std::string& isa, const std::
   const DirectLighting source(load_catalogue_scene("veach-mis"), 96, 64);
   std::vector<Heuristic> heuristics;
   Allocation allocation;
-  for (const char* name : {"average", "balance", "power", "power:3", "power:4"}) {
+  for (const char* name : {"average", "balance", "power"}) {
     const Estimator estimator = parse_estimator(name + ("@" + techniques), source.techniques());
     heuristics.push_back(estimator.heuristic);
     allocation = estimator.allocation;

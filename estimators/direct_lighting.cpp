@@ -25,12 +25,13 @@ void copy(const Rgb& from, T (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = static_cast<T>(from[i]);
 }
 
-double area(const Primitive& primitive) {
+double scaled_area(const Primitive& primitive, double scale) {
   if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
-    return 4 * std::numbers::pi * sphere->radius * sphere->radius;
+    const double radius = scale * sphere->radius;
+    return 4 * std::numbers::pi * radius * radius;
   }
   const auto& r = std::get<Rectangle>(primitive.shape);
-  return 4 * r.half_u.norm() * r.half_v.norm();
+  return 4 * (scale * r.half_u).norm() * (scale * r.half_v).norm();
 }
 
 /// Rows: a local frame whose z axis is n (J. R. Frisvad's problem, solved by Duff and others 2017).
@@ -42,25 +43,39 @@ Eigen::Matrix3d frame(const Vec3& n) {
   return rows;
 }
 
+/// A power of two by which lengths around the receiver become at most about 1. Kernels square them, and binary32 has
+/// no squares of lengths beyond 1e±19.
+double length_scale(const Scene& scene, const Receiver& receiver) {
+  double farthest = 0;
+  for (const Primitive& primitive : scene.primitives) {
+    const Vec3 center = std::visit([](const auto& s) { return s.center; }, primitive.shape);
+    farthest = std::max(farthest, (center - receiver.position).stableNorm());
+  }
+  return farthest > 0 ? std::exp2(-std::ilogb(farthest)) : 1;
+}
+
+/// `own`: the receiver lies on it. `light`: its index among the lights.
 template <class T>
 LocalShape<T> local_shape(const Primitive& primitive, const Receiver& receiver, const Eigen::Matrix3d& to_local,
-                          bool own, int light) {
+                          double scale, bool own, int light) {
   LocalShape<T> shape;
   shape.light = light;
   if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
-    copy(Vec3(to_local * (sphere->center - receiver.position)), shape.center);
-    shape.radius = static_cast<T>(sphere->radius);
+    copy(Vec3(scale * (to_local * (sphere->center - receiver.position))), shape.center);
+    shape.radius = static_cast<T>(scale * sphere->radius);
     shape.inside = inside_sphere(receiver, *sphere, own);
     return shape;
   }
   const auto& r = std::get<Rectangle>(primitive.shape);
+  const Vec3 center = scale * (r.center - receiver.position), half_u = scale * r.half_u, half_v = scale * r.half_v;
   shape.is_sphere = false;
-  copy(Vec3(to_local * (r.center - receiver.position)), shape.center);
-  copy(Vec3(to_local * r.half_u), shape.u);
-  copy(Vec3(to_local * r.half_v), shape.v);
+  copy(Vec3(to_local * center), shape.center);
+  copy(Vec3(to_local * half_u), shape.u);
+  copy(Vec3(to_local * half_v), shape.v);
   copy(Vec3(to_local * r.normal), shape.normal);
-  shape.inv_u2 = static_cast<T>(1 / r.half_u.squaredNorm());
-  shape.inv_v2 = static_cast<T>(1 / r.half_v.squaredNorm());
+  shape.plane = static_cast<T>(r.normal.dot(center));
+  shape.inv_u2 = static_cast<T>(1 / half_u.squaredNorm());
+  shape.inv_v2 = static_cast<T>(1 / half_v.squaredNorm());
   return shape;
 }
 
@@ -73,6 +88,7 @@ struct Local {
 
   Local(const Scene& scene, const std::vector<int>& light_indices, const Receiver& receiver, const Vec3& to_eye) {
     const Eigen::Matrix3d to_local = frame(receiver.normal);
+    const double scale = length_scale(scene, receiver);
     copy(Vec3(to_local * to_eye), data.wo);
     for (int i = 0; i < 9; ++i) data.world_to_local[i] = static_cast<T>(to_local(i / 3, i % 3));
     const Bsdf& bsdf = scene.primitives[static_cast<std::size_t>(receiver.primitive)].bsdf;
@@ -89,16 +105,18 @@ struct Local {
     for (const int index : light_indices) {
       const Primitive& primitive = scene.primitives[static_cast<std::size_t>(index)];
       LocalLight<T> light;
-      light.reaches = light_reaches(receiver, primitive);
-      light.shape = local_shape<T>(primitive, receiver, to_local, index == receiver.primitive,
-                                   light_of[static_cast<std::size_t>(index)]);
-      light.pdf_area = static_cast<T>(1 / (area(primitive) * static_cast<double>(light_indices.size())));
+      const bool own = index == receiver.primitive;
+      light.reaches = light_reaches(receiver, primitive, own);
+      light.shape =
+          local_shape<T>(primitive, receiver, to_local, scale, own, light_of[static_cast<std::size_t>(index)]);
+      light.pdf_area =
+          static_cast<T>(1 / (scaled_area(primitive, scale) * static_cast<double>(light_indices.size())));
       if (light.reaches) copy(primitive.radiance, light.radiance);
       lights.push_back(light);
     }
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
       if (blocks_some_light(scene, light_indices, receiver, static_cast<int>(i))) {
-        occluders.push_back(local_shape<T>(scene.primitives[i], receiver, to_local,
+        occluders.push_back(local_shape<T>(scene.primitives[i], receiver, to_local, scale,
                                            static_cast<int>(i) == receiver.primitive, light_of[i]));
       }
     }
@@ -109,12 +127,17 @@ struct Local {
   }
 
   static bool blocks_some_light(const Scene& scene, const std::vector<int>& light_indices, const Receiver& receiver,
-                                int shape) {
-    if (shape == receiver.primitive) return false;  // flat and convex shapes do not shade their own front
+                                int index) {
+    const Primitive& shape = scene.primitives[static_cast<std::size_t>(index)];
+    if (index == receiver.primitive) {
+      // A rectangle or the outside of a sphere does not shade its own front; the inside of a sphere does.
+      const auto* sphere = std::get_if<Sphere>(&shape.shape);
+      if (!sphere || !inside_sphere(receiver, *sphere, true)) return false;
+    }
     for (const int light : light_indices) {
       const Primitive& primitive = scene.primitives[static_cast<std::size_t>(light)];
-      if (light != shape && light_reaches(receiver, primitive) &&
-          can_occlude(receiver, primitive, scene.primitives[static_cast<std::size_t>(shape)])) {
+      if (light != index && light_reaches(receiver, primitive, light == receiver.primitive) &&
+          can_occlude(receiver, primitive, shape)) {
         return true;
       }
     }

@@ -150,7 +150,7 @@ inline bool intersect(const LocalShape<scalar_t<F>>& shape, const Vec<F>& d, Int
   }
   const Vec<F> normal = broadcast<F>(shape.normal);
   const F slope = dot(normal, d);
-  const F distance = dot(normal, center) / slope;
+  const F distance = F(shape.plane) / slope;
   const Vec<F> offset = distance * d - center;
   const F a = dot(offset, broadcast<F>(shape.u)) * F(shape.inv_u2),
           b = dot(offset, broadcast<F>(shape.v)) * F(shape.inv_v2);

@@ -11,7 +11,7 @@
 namespace halfslope {
 namespace {
 
-constexpr int kMostSamples = 64;      // of one round: its terms are held for a whole block
+constexpr int kMostSamples = 64;  // of one round: its terms are held for a whole block
 constexpr int kMostTechniques = 16;
 
 std::vector<std::string> names_of(std::span<const Technique> techniques) {
@@ -54,7 +54,8 @@ Allocation parse_allocation(const std::string& name, std::string_view list, std:
     if (star != std::string_view::npos) {
       const auto parsed = parse_number<int>(item.substr(star + 1));
       if (!parsed || *parsed < 1 || *parsed > kMostSamples) {
-        fail(ExitCode::kBadInput, "estimator '{}': '{}': a count is a whole number from 1 to {}", name, item, kMostSamples);
+        fail(ExitCode::kBadInput, "estimator '{}': '{}': a count is a whole number from 1 to {}", name, item,
+             kMostSamples);
       }
       count = *parsed;
     }
@@ -82,8 +83,9 @@ Heuristic parse_heuristic(const std::string& name, std::string_view text, std::s
     if (!has_parameter) return {HeuristicKind::kPower, 2};
     const auto beta = parse_number<double>(text.substr(colon + 1));
     if (!beta || !std::isfinite(*beta) || *beta < 0) {
-      fail(ExitCode::kBadInput, "estimator '{}': the power heuristic's exponent is a number that is at least 0, found '{}'",
-           name, text.substr(colon + 1));
+      fail(ExitCode::kBadInput,
+           "estimator '{}': the power heuristic's exponent is a number that is at least 0, found '{}'", name,
+           text.substr(colon + 1));
     }
     return {HeuristicKind::kPower, *beta};
   }
@@ -112,9 +114,12 @@ Layout Allocation::layout(std::span<const Technique> catalogue) const {
 // The menu. A new heuristic is a kind in estimators/kernels.h, its weight in heuristics.h, its name here and above.
 std::vector<EstimatorInfo> estimator_catalogue() {
   return {
-      {"mean", "the plain mean of an integrand's values (analytic integrands)", "the definition of Monte Carlo integration"},
-      {"light", "surface form: a light chosen uniformly, then a point uniform on its area", "Veach (1997), section 8.2.2"},
-      {"bsdf", "directional form: the BSDF's own density (visible normals for GGX)", "Veach (1997), section 8.2.2; Heitz (2018)"},
+      {"mean", "the plain mean of an integrand's values (analytic integrands)",
+       "the definition of Monte Carlo integration"},
+      {"light", "surface form: a light chosen uniformly, then a point uniform on its area",
+       "Veach (1997), section 8.2.2"},
+      {"bsdf", "directional form: the BSDF's own density (visible normals for GGX)",
+       "Veach (1997), section 8.2.2; Heitz (2018)"},
       {"average", "the plain average of the techniques' estimators, w = 1/n", "Veach & Guibas (1995)"},
       {"balance", "balance heuristic, w_i = c_i p_i / sum c_k p_k", "Veach & Guibas (1995); Veach (1997), eq. 9.8"},
       {"power[:B]", "power heuristic with exponent B (default 2)", "Veach & Guibas (1995); Veach (1997), eq. 9.9"},

@@ -16,12 +16,14 @@
 // overflows, and what underflows is a weight that is 0 to the last bit. Where every density is 0 each weight is 1/n.
 #pragma once
 
+#include <limits>
+
 #include "core/packet.h"
 #include "estimators/kernels.h"
 
 namespace halfslope {
 
-/// r^β for r in [0, 1], β ≥ 0; r^β = 0 for r below the normal range where β > 1.
+/// r^β for r in [0, 1], β ≥ 0; 0 for r below the normal range where β is none of 0, 1, 2, 3, 4. NaN stays NaN.
 template <class F>
 inline F ratio_power(const F& r, double beta) {
   using T = scalar_t<F>;
@@ -30,17 +32,26 @@ inline F ratio_power(const F& r, double beta) {
   if (beta == 3) return r * r * r;
   if (beta == 4) return (r * r) * (r * r);
   const F smallest(std::numeric_limits<T>::min()), zero(T(0)), one(T(1));
+  if (beta == 0) return fma(zero, r, one);
   const F exponent = F(static_cast<T>(beta)) * log(max(r, smallest));
   // Below this exp is 0 or denormal: say so rather than ask it.
   const F least(std::is_same_v<T, float> ? T(-87) : T(-708));
   const F power = select(exponent < least, zero, exp(max(exponent, least)));
-  return beta == 0 ? one : select(r < smallest, zero, power);
+  return select(r >= smallest, power, zero * r);
 }
 
 /// The ratios r_k of the scaled densities c_k p_k (in place), and whether all of them were 0 (then each ratio is 1).
 template <class F>
 inline void to_ratios(F* scaled, int techniques) {
   using T = scalar_t<F>;
+  if (techniques == 2) {  // the usual case needs one division
+    const auto first = scaled[0] >= scaled[1];
+    const F larger = select(first, scaled[0], scaled[1]), smaller = select(first, scaled[1], scaled[0]);
+    const F unit(T(1)), ratio = select(larger == F(T(0)), unit, smaller / larger);
+    scaled[0] = select(first, unit, ratio);
+    scaled[1] = select(first, ratio, unit);
+    return;
+  }
   F largest = scaled[0];
   for (int k = 1; k < techniques; ++k) largest = max(scaled[k], largest);
   const auto none = largest == F(T(0));

@@ -39,20 +39,44 @@ void fold(const FoldCall<T>& call) {
 template void fold<float>(const FoldCall<float>&);
 template void fold<double>(const FoldCall<double>&);
 
-// Kahan's sum in each lane, rows in order: a replicate's sum is its own, whatever the packet width.
-template <class T>
-void accumulate(const T* values, int samples, double* sum, double* compensation) {
-  for (int s = 0; s < samples; ++s) {
-    const T* row = values + static_cast<std::size_t>(s) * kLanes;
+// Kahan's sum in each lane, rows in order: a replicate's sum is its own, whatever the packet width. Each is a chain of
+// four dependent additions, so kTogether outputs run side by side, in registers, and fill each other's waiting.
+template <class T, int kTogether>
+void accumulate_some(const T* const* values, int samples, double* sums, double* compensations) {
+  double sum[kTogether][kLanes], compensation[kTogether][kLanes];
+  for (int o = 0; o < kTogether; ++o) {
     for (int l = 0; l < kLanes; ++l) {
-      const double y = static_cast<double>(row[l]) - compensation[l];
-      const double t = sum[l] + y;
-      compensation[l] = (t - sum[l]) - y;
-      sum[l] = t;
+      sum[o][l] = sums[o * kLanes + l];
+      compensation[o][l] = compensations[o * kLanes + l];
+    }
+  }
+  for (int s = 0; s < samples; ++s) {
+    for (int o = 0; o < kTogether; ++o) {
+      const T* row = values[o] + static_cast<std::size_t>(s) * kLanes;
+      for (int l = 0; l < kLanes; ++l) {
+        const double y = static_cast<double>(row[l]) - compensation[o][l];
+        const double t = sum[o][l] + y;
+        compensation[o][l] = (t - sum[o][l]) - y;
+        sum[o][l] = t;
+      }
+    }
+  }
+  for (int o = 0; o < kTogether; ++o) {
+    for (int l = 0; l < kLanes; ++l) {
+      sums[o * kLanes + l] = sum[o][l];
+      compensations[o * kLanes + l] = compensation[o][l];
     }
   }
 }
-template void accumulate<float>(const float*, int, double*, double*);
-template void accumulate<double>(const double*, int, double*, double*);
+
+template <class T>
+void accumulate(const T* const* values, int outputs, int samples, double* sums, double* compensations) {
+  int o = 0;
+  for (; o + 3 <= outputs; o += 3)
+    accumulate_some<T, 3>(values + o, samples, sums + o * kLanes, compensations + o * kLanes);
+  for (; o < outputs; ++o) accumulate_some<T, 1>(values + o, samples, sums + o * kLanes, compensations + o * kLanes);
+}
+template void accumulate<float>(const float* const*, int, int, double*, double*);
+template void accumulate<double>(const double* const*, int, int, double*, double*);
 
 }  // namespace halfslope::kernel

@@ -12,6 +12,6 @@ void sample_bsdf(const LightingCall<T>& call);
 template <class T>
 void fold(const FoldCall<T>& call);
 template <class T>
-void accumulate(const T* values, int samples, double* sum, double* compensation);
+void accumulate(const T* const* values, int outputs, int samples, double* sums, double* compensations);
 
 }  // namespace halfslope::kernel

@@ -45,9 +45,10 @@ struct FoldCall {
   T* const* out;
 };
 
-/// Adds `samples` rows of kLanes values to the lanes' compensated sums.
+/// Adds `samples` rows of kLanes values of each output to its lanes' compensated sums (kLanes numbers an output).
 template <class T>
-using AccumulateValues = void (*)(const T* values, int samples, double* sum, double* compensation);
+using AccumulateValues = void (*)(const T* const* values, int outputs, int samples, double* sums,
+                                  double* compensations);
 
 struct EstimatorKernels {
   static constexpr const char* kSymbol = "halfslope_estimator_kernels";

@@ -14,8 +14,9 @@ constexpr std::uint64_t kBlock = 32;
 }  // namespace
 
 template <class T>
-PassEvaluator<T>::PassEvaluator(std::unique_ptr<Sampler> sampler, std::span<const Technique> techniques, Allocation allocation,
-                                std::vector<Heuristic> heuristics, std::vector<std::uint64_t> rounds, int channels)
+PassEvaluator<T>::PassEvaluator(std::unique_ptr<Sampler> sampler, std::span<const Technique> techniques,
+                                Allocation allocation, std::vector<Heuristic> heuristics,
+                                std::vector<std::uint64_t> rounds, int channels)
     : sampler_(std::move(sampler)),
       allocation_(std::move(allocation)),
       heuristics_(std::move(heuristics)),
@@ -97,14 +98,11 @@ void PassEvaluator<T>::sum_points(const Integral& integral, std::uint64_t begin,
         kernels_.fold_f64(fold);
       }
     }
-    for (std::size_t o = 0; o < outputs_.size(); ++o) {
-      double* sum = sums_.data() + o * kLanes;
-      double* compensation = compensations_.data() + o * kLanes;
-      if constexpr (std::is_same_v<T, float>) {
-        kernels_.accumulate_f32(outputs_[o], samples, sum, compensation);
-      } else {
-        kernels_.accumulate_f64(outputs_[o], samples, sum, compensation);
-      }
+    const auto outputs = static_cast<int>(outputs_.size());
+    if constexpr (std::is_same_v<T, float>) {
+      kernels_.accumulate_f32(outputs_.data(), outputs, samples, sums_.data(), compensations_.data());
+    } else {
+      kernels_.accumulate_f64(outputs_.data(), outputs, samples, sums_.data(), compensations_.data());
     }
   }
 }
@@ -116,7 +114,8 @@ void PassEvaluator<T>::report(std::size_t n) {
     for (int c = 0; c < channels_; ++c) {
       const std::size_t o = h * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(c);
       double* out = const_cast<double*>(estimates(h, n, c));
-      for (std::size_t l = 0; l < kLanes; ++l) out[l] = (sums_[o * kLanes + l] - compensations_[o * kLanes + l]) / rounds;
+      for (std::size_t l = 0; l < kLanes; ++l)
+        out[l] = (sums_[o * kLanes + l] - compensations_[o * kLanes + l]) / rounds;
     }
   }
 }

@@ -26,8 +26,9 @@ class PassEvaluator {
   /// kLanes numbers: heuristic h, the n-th of `rounds`, channel c.
   void run(const Integral& integral, StreamKey key, std::uint32_t pixel, std::uint32_t replicate);
   const double* estimates(std::size_t heuristic, std::size_t n, int channel) const {
-    return estimates_.data() +
-           ((heuristic * rounds_.size() + n) * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(channel)) * kLanes;
+    return estimates_.data() + ((heuristic * rounds_.size() + n) * static_cast<std::size_t>(channels_) +
+                                static_cast<std::size_t>(channel)) *
+                                   kLanes;
   }
 
  private:

@@ -9,6 +9,7 @@ namespace halfslope {
 
 /// A sphere or rectangle relative to the receiving point, in its local frame. Positions are differences taken in double
 /// precision before they are rounded to T, so binary32 kernels lose nothing to the scene's distance from its origin.
+/// Lengths are in a unit near the scene's size, so that their squares stay in T's range whatever unit the file is in.
 template <class T>
 struct LocalShape {
   bool is_sphere = true;
@@ -17,6 +18,7 @@ struct LocalShape {
   T u[3] = {}, v[3] = {};    ///< a rectangle's half axes
   T inv_u2 = 0, inv_v2 = 0;  ///< 1/|half axis|²
   T normal[3] = {};          ///< a rectangle's front
+  T plane = 0;               ///< normal · center: its sign tells on which side a close receiver is
   bool inside = false;       ///< the receiver is inside the sphere: rays meet the far side
   int light = -1;            ///< its index among the scene's lights, or −1
 };

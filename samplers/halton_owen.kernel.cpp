@@ -33,9 +33,10 @@ inline std::uint32_t keyed(std::uint32_t index, std::uint32_t key0, std::uint32_
   return mix(mix(index ^ key0) + key1);
 }
 
-// (digits + (u + ½)/2³²) / b^{k+1} strictly inside its interval of length b^−(k+1), cut to 53 bits too: the half keeps it
-// 2⁻³³ / b^{k+1} from the interval's ends, which up to b^{k+1} = 2¹⁸ is 4 · 2⁻⁵³, and the two roundings (of 1/b^{k+1} and
-// of the product) and the cut move it by less than 2.5 · 2⁻⁵³. Beyond 2¹⁸, u gives up its lowest bits instead.
+// (digits + (u + ½)/2³²) / b^{k+1} strictly inside its interval of length b^−(k+1), cut to 53 bits too: the half keeps
+// it 2⁻³³ / b^{k+1} from the interval's ends, which up to b^{k+1} = 2¹⁸ is 4 · 2⁻⁵³, and the two roundings (of
+// 1/b^{k+1} and of the product) and the cut move it by less than 2.5 · 2⁻⁵³. Beyond 2¹⁸, u gives up its lowest bits
+// instead.
 struct Level {
   double width;    // b^{k+1}
   double inverse;  // 1 / b^{k+1}

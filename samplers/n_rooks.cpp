@@ -33,10 +33,10 @@ class NRooks final : public Sampler {
       std::uint32_t* high = block.high(d);
       words_.fill(Draw::kHigh, d, begin, block.samples(), high);
       const LanePermutation& permutation = permutations_[static_cast<std::size_t>(d)];
-      for (int s = 0; s < block.samples(); ++s) {
-        for (int lane = 0; lane < kLanes; ++lane, ++high) {
-          *high = strata_.place(permutation.at(begin + static_cast<std::uint64_t>(s), lane), *high);
-        }
+      for (int s = 0; s < block.samples(); ++s, high += kLanes) {
+        std::uint32_t cells[kLanes];
+        permutation.lanes(begin + static_cast<std::uint64_t>(s), cells);
+        strata_.place_lanes(cells, high);
       }
       if (block.has_low_words()) words_.fill_low(d, begin, block.samples(), block.low(d));
     }

@@ -8,6 +8,7 @@ namespace halfslope {
 void Strata::reset(std::uint64_t count) {
   if (count == count_) return;
   count_ = count;
+  shift_ = count > 1 && std::has_single_bit(count) ? 32 - std::countr_zero(count) : 0;
   if (count > kTabled) return;
   edges_.resize(count + 1);
   for (std::uint64_t i = 0; i <= count; ++i) edges_[i] = exact_edge(i);
@@ -19,20 +20,20 @@ void LanePermutation::prepare(const WordSource& words, int dim, std::uint64_t co
     words.fill(Draw::kPermutation, dim, 0, 4, keys_);
     return;
   }
-  table_.resize(kShuffled * kLanes);
+  table_.resize(std::max<std::size_t>(table_.size(), count * kLanes));
   constexpr std::uint64_t kChunk = 64;
   words_.resize(kChunk * kLanes);
   for (std::uint64_t first = 0; first < count; first += kChunk) {
     const auto chunk = static_cast<int>(std::min(kChunk, count - first));
     words.fill(Draw::kPermutation, dim, first, chunk, words_.data());
-    for (int lane = 0; lane < kLanes; ++lane) {
-      std::uint16_t* p = table_.data() + static_cast<std::size_t>(lane) * kShuffled;
-      // The shuffle from the inside out: element i goes to a uniform place j ≤ i, and what was there moves to i.
-      for (std::uint64_t s = 0; s < static_cast<std::uint64_t>(chunk); ++s) {
-        const std::uint64_t i = first + s;
-        const std::uint64_t j = (words_[s * kLanes + static_cast<std::uint64_t>(lane)] * (i + 1)) >> 32;
-        p[i] = p[j];
-        p[j] = static_cast<std::uint16_t>(i);
+    // The shuffle from the inside out: element i goes to a uniform place j ≤ i, and what was there moves to i. Lanes
+    // are the inner loop, since one lane's steps wait for each other.
+    for (std::uint64_t s = 0; s < static_cast<std::uint64_t>(chunk); ++s) {
+      const std::uint64_t i = first + s;
+      for (std::uint64_t lane = 0; lane < kLanes; ++lane) {
+        const std::uint64_t j = (words_[s * kLanes + lane] * (i + 1)) >> 32;
+        table_[i * kLanes + lane] = table_[j * kLanes + lane];
+        table_[j * kLanes + lane] = static_cast<std::uint16_t>(i);
       }
     }
   }

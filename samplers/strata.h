@@ -19,6 +19,14 @@ class Strata {
     const std::uint64_t lower = edge(index), upper = edge(index + 1);
     return static_cast<std::uint32_t>(lower + (((upper - lower) * word) >> 32));
   }
+  /// place() for each lane: words[l] becomes the high word at fraction words[l] of stratum cells[l].
+  void place_lanes(const std::uint32_t* cells, std::uint32_t* words) const {
+    if (shift_ > 0) {  // a power of two: the stratum is the upper bits
+      for (int l = 0; l < kLanes; ++l) words[l] = (cells[l] << shift_) + (words[l] >> (32 - shift_));
+    } else {
+      for (int l = 0; l < kLanes; ++l) words[l] = place(cells[l], words[l]);
+    }
+  }
 
  private:
   static constexpr std::uint64_t kTabled = 4096;  // a division would cost more than the rest of a coordinate
@@ -26,6 +34,7 @@ class Strata {
   std::uint64_t exact_edge(std::uint64_t index) const { return ((index << 32) + count_ - 1) / count_; }
 
   std::uint64_t count_ = 0;
+  int shift_ = 0;  ///< 32 − log2(count) for the powers of two from 2, else 0
   std::vector<std::uint64_t> edges_;
 };
 
@@ -40,15 +49,19 @@ class LanePermutation {
 
   void prepare(const WordSource& words, int dim, std::uint64_t count);
   std::uint64_t at(std::uint64_t index, int lane) const {
-    if (count_ <= kShuffled) return table_[static_cast<std::size_t>(lane) * kShuffled + index];
+    if (count_ <= kShuffled) return table_[index * kLanes + static_cast<std::size_t>(lane)];
     return walk(index, lane);
+  }
+  /// at() for each lane.
+  void lanes(std::uint64_t index, std::uint32_t* out) const {
+    for (int l = 0; l < kLanes; ++l) out[l] = static_cast<std::uint32_t>(at(index, l));
   }
 
  private:
   std::uint64_t walk(std::uint64_t index, int lane) const;
 
   std::uint64_t count_ = 0;
-  std::vector<std::uint16_t> table_;  // [lane][index]
+  std::vector<std::uint16_t> table_;  // [index][lane]
   std::vector<std::uint32_t> words_;
   std::uint32_t keys_[4 * kLanes] = {};
 };

@@ -47,17 +47,22 @@ class Stratified final : public Sampler {
       const bool pair = layout_->groups[g] == 2;
       std::uint32_t* x = block.high(dim);
       std::uint32_t* y = pair ? block.high(dim + 1) : nullptr;
-      std::size_t i = 0;
-      for (int s = 0; s < block.samples(); ++s) {
-        for (int lane = 0; lane < kLanes; ++lane, ++i) {
-          const std::uint64_t cell = permutation.at(begin + static_cast<std::uint64_t>(s), lane);
-          if (pair) {
-            x[i] = columns_.place(cell % grid_.columns, x[i]);
-            y[i] = rows_.place(cell / grid_.columns, y[i]);
-          } else {
-            x[i] = line_.place(cell, x[i]);
-          }
+      for (int s = 0; s < block.samples(); ++s, x += kLanes) {
+        std::uint32_t cells[kLanes];
+        permutation.lanes(begin + static_cast<std::uint64_t>(s), cells);
+        if (!pair) {
+          line_.place_lanes(cells, x);
+          continue;
         }
+        std::uint32_t columns[kLanes], rows[kLanes];
+        const auto width = static_cast<std::uint32_t>(grid_.columns);
+        for (int l = 0; l < kLanes; ++l) {
+          rows[l] = cells[l] / width;
+          columns[l] = cells[l] - rows[l] * width;
+        }
+        columns_.place_lanes(columns, x);
+        rows_.place_lanes(rows, y);
+        y += kLanes;
       }
       dim += layout_->groups[g];
     }

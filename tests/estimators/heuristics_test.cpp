@@ -4,163 +4,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <random>
-#include <string>
 #include <vector>
 
-#include "core/point_block.h"
-#include "tests/estimators/isa_scope.h"
+#include "tests/estimators/heuristic_ways.h"
 
 namespace halfslope {
 namespace {
-
-constexpr Heuristic kAverage = {HeuristicKind::kAverage, 0}, kBalance = {HeuristicKind::kBalance, 0};
-constexpr double kBetas[] = {0.5, 1, 2, 3, 4, 7.3, 1000};
-
-Heuristic power(double beta) { return {HeuristicKind::kPower, beta}; }
-
-std::vector<Heuristic> every_heuristic() {
-  std::vector<Heuristic> all = {kAverage, kBalance};
-  for (const double beta : kBetas) all.push_back(power(beta));
-  return all;
-}
-
-std::string name(const Heuristic& h) {
-  if (h.kind != HeuristicKind::kPower) return h.kind == HeuristicKind::kAverage ? "average" : "balance";
-  return "power:" + std::to_string(h.parameter);
-}
-
-/// [technique][point]; the number of points is a multiple of kLanes.
-template <class T>
-using Table = std::vector<std::vector<T>>;
-
-/// A way to compute weights: every technique's weight at every point, from every technique's density there.
-template <class T>
-struct Way {
-  std::string name;
-  std::function<Table<T>(const Heuristic&, const Table<T>& densities)> weights;
-};
-
-template <class F>
-Way<scalar_t<F>> by_template(const std::string& type) {
-  using T = scalar_t<F>;
-  return {type, [](const Heuristic& heuristic, const Table<T>& densities) {
-            const int n = static_cast<int>(densities.size());
-            Table<T> weights = densities;
-            alignas(64) T lanes[64];
-            for (std::size_t p = 0; p < densities[0].size(); p += static_cast<std::size_t>(kWidth<F>)) {
-              F ratios[8];
-              for (std::size_t k = 0; k < densities.size(); ++k) {
-                for (std::size_t l = 0; l < static_cast<std::size_t>(kWidth<F>); ++l) lanes[l] = densities[k][p + l];
-                ratios[k] = load<F>(lanes);
-              }
-              to_ratios(ratios, n);
-              for (std::size_t i = 0; i < densities.size(); ++i) {
-                store(lanes, weight(heuristic, ratios, n, static_cast<int>(i)));
-                for (std::size_t l = 0; l < static_cast<std::size_t>(kWidth<F>); ++l) weights[i][p + l] = lanes[l];
-              }
-            }
-            return weights;
-          }};
-}
-
-/// What `fold` makes of a round: `values` and `counts` by technique, slots[q] the technique of slot q, one channel.
-template <class T>
-std::vector<T> folded(Isa isa, const std::vector<Heuristic>& heuristics, const Table<T>& densities,
-                      const std::vector<int>& slots, const Table<T>& values, const std::vector<T>& counts) {
-  const std::size_t stride = densities[0].size(), rows = 1 + densities.size();
-  AlignedBuffer<T> terms(slots.size() * rows * stride), out(heuristics.size() * stride);
-  for (std::size_t q = 0; q < slots.size(); ++q) {
-    for (std::size_t p = 0; p < stride; ++p) {
-      terms[q * rows * stride + p] = values[q][p];
-      for (std::size_t k = 0; k < densities.size(); ++k) terms[(q * rows + 1 + k) * stride + p] = densities[k][p];
-    }
-  }
-  std::vector<T*> outputs;
-  for (std::size_t h = 0; h < heuristics.size(); ++h) outputs.push_back(out.data() + h * stride);
-  const FoldCall<T> call = {terms.data(),
-                            stride,
-                            stride,
-                            static_cast<int>(slots.size()),
-                            1,
-                            static_cast<int>(densities.size()),
-                            slots.data(),
-                            counts.data(),
-                            heuristics.data(),
-                            static_cast<int>(heuristics.size()),
-                            outputs.data()};
-  const IsaScope scope(isa);
-  const auto& table = kernels<EstimatorKernels>();
-  if constexpr (std::is_same_v<T, float>) {
-    table.fold_f32(call);
-  } else {
-    table.fold_f64(call);
-  }
-  return {out.data(), out.data() + heuristics.size() * stride};
-}
-
-template <class T>
-Way<T> by_fold(Isa isa) {
-  return {"fold " + to_string(isa), [isa](const Heuristic& heuristic, const Table<T>& densities) {
-            const std::size_t n = densities.size(), stride = densities[0].size();
-            std::vector<int> slots;
-            for (std::size_t q = 0; q < n; ++q) slots.push_back(static_cast<int>(q));
-            Table<T> weights;
-            for (std::size_t i = 0; i < n; ++i) {  // a value of 1 in one slot alone: its weight comes out
-              Table<T> values(n, std::vector<T>(stride, T(0)));
-              values[i].assign(stride, T(1));
-              weights.push_back(folded<T>(isa, {heuristic}, densities, slots, values, std::vector<T>(n, T(1))));
-            }
-            return weights;
-          }};
-}
-
-template <class T>
-std::vector<Way<T>> every_way() {
-  std::vector<Way<T>> ways = {by_template<T>("scalar"), by_template<NativePacket<T>>("packet")};
-  for (const Isa isa : supported_isas()) ways.push_back(by_fold<T>(isa));
-  return ways;
-}
 
 template <class T>
 class Weights : public testing::Test {};
 using Numbers = testing::Types<float, double>;
 TYPED_TEST_SUITE(Weights, Numbers);
-
-/// Densities log-uniform over 1e-30 … 1e30, one in five of them 0.
-template <class T>
-Table<T> random_densities(std::size_t techniques, std::size_t points, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-  Table<T> densities(techniques, std::vector<T>(points));
-  for (std::size_t p = 0; p < points; ++p) {
-    for (auto& row : densities) {
-      const double exponent = 60 * uniform() - 30;
-      row[p] = uniform() < 0.2 ? T(0) : static_cast<T>(std::pow(10, exponent));
-    }
-  }
-  return densities;
-}
-
-/// The weight by the definition, in logarithms: no range to leave.
-template <class T>
-long double exact_weight(const Heuristic& heuristic, const Table<T>& densities, std::size_t i, std::size_t p) {
-  const auto n = static_cast<long double>(densities.size());
-  if (heuristic.kind == HeuristicKind::kAverage) return 1 / n;
-  const long double beta = heuristic.kind == HeuristicKind::kBalance ? 1 : heuristic.parameter;
-  bool none = true;
-  for (const auto& row : densities) none = none && row[p] == T(0);
-  if (none) return 1 / n;
-  if (densities[i][p] == T(0)) return 0;
-  long double sum = 0;
-  const long double own = std::log(static_cast<long double>(densities[i][p]));
-  for (const auto& row : densities) {
-    if (row[p] != T(0)) sum += std::exp(beta * (std::log(static_cast<long double>(row[p])) - own));
-  }
-  return 1 / sum;
-}
 
 TYPED_TEST(Weights, SumToOneAndFollowTheDefinition) {
   using T = TypeParam;
@@ -174,7 +30,7 @@ TYPED_TEST(Weights, SumToOneAndFollowTheDefinition) {
         // A ratio is off by half an ulp, its power by β times as much, its logarithm times β by as much again.
         const double tolerance = epsilon * (8 + 2 * heuristic.parameter);
         for (std::size_t p = 0; p < 2048; ++p) {
-          long double sum = 0;
+          double sum = 0;
           for (std::size_t i = 0; i < n; ++i) {
             const T w = weights[i][p];
             ASSERT_GE(w, T(0)) << way.name << ' ' << name(heuristic);
@@ -282,17 +138,17 @@ TYPED_TEST(Weights, PowerZeroIsTheAverage) {
 // type's range, or the answer is one that it rounds to a subnormal).
 struct PowerCase {
   double f, g;
-  long double exact;
+  double exact;
   double f64, f32;
 };
 constexpr PowerCase kPowerCases[] = {
-    {0x1.5af1d8p+66, 1, 1.0L, 8.881784197001252e-16, 4.76837158203125e-07},
-    {1, 0x1p-12, 0.999999940395358777322842042277L, 8.881784197001252e-16, 9.536e-07},
-    {0x1.99999ap-4, 0x1.388p+13, 1.00000002970232260378945281516e-10L, 8.881784197001252e-16, 1.3712e-06},
-    {0x1.82db34p-77, 0x1.82db34p-77, 0.5L, 8.881784197001252e-16, 4.76837158203125e-07},
-    {0x1.a0556ap+64, 0x1.158e46p+63, 0.900000006597069465195330799244L, 8.881784197001252e-16, 5.184e-07},
-    {0x1.3529ba7d19eafp-565, 0x1.cfbe97bba6e07p-564, 0.09999999999999998896826233626L, 8.881784197001252e-16, -1},
-    {1, 0x1.5af1d8p+66, 9.99999959918246519470261801232e-41L, 8.881784197001252e-16, -1},
+    {0x1.5af1d8p+66, 1, 1.0, 8.881784197001252e-16, 4.76837158203125e-07},
+    {1, 0x1p-12, 0.999999940395358777322842042277, 8.881784197001252e-16, 9.536e-07},
+    {0x1.99999ap-4, 0x1.388p+13, 1.00000002970232260378945281516e-10, 8.881784197001252e-16, 1.3712e-06},
+    {0x1.82db34p-77, 0x1.82db34p-77, 0.5, 8.881784197001252e-16, 4.76837158203125e-07},
+    {0x1.a0556ap+64, 0x1.158e46p+63, 0.900000006597069465195330799244, 8.881784197001252e-16, 5.184e-07},
+    {0x1.3529ba7d19eafp-565, 0x1.cfbe97bba6e07p-564, 0.09999999999999998896826233626, 8.881784197001252e-16, -1},
+    {1, 0x1.5af1d8p+66, 9.99999959918246519470261801232e-41, 8.881784197001252e-16, -1},
 };
 
 TYPED_TEST(Weights, PowerHoldsWhereSquaresOverflow) {
@@ -313,8 +169,8 @@ TYPED_TEST(Weights, PowerHoldsWhereSquaresOverflow) {
 }
 
 TYPED_TEST(Weights, FoldIsTheMultiSampleEstimator) {
-  // F = Σ_i (1/c_i) Σ_j w_i f/p_i with w from c_k p_k, three samples of technique 0 and two of technique 1 (Veach 1997,
-  // eq. 9.4); every slot has its own densities, so slots are folded one by one and added here.
+  // F = Σ_i (1/c_i) Σ_j w_i f/p_i with w from c_k p_k (Veach 1997, eq. 9.4), with three samples of technique
+  // 0 and two of technique 1.
   using T = TypeParam;
   constexpr std::size_t kPoints = 64;
   const std::vector<int> slots = {0, 0, 0, 1, 1};
@@ -336,10 +192,10 @@ TYPED_TEST(Weights, FoldIsTheMultiSampleEstimator) {
     for (std::size_t h = 0; h < heuristics.size(); ++h) {
       const double tolerance = std::numeric_limits<T>::epsilon() * (20 + 4 * heuristics[h].parameter);
       for (std::size_t p = 0; p < kPoints; ++p) {
-        long double sum = 0;
+        double sum = 0;
         for (std::size_t q = 0; q < slots.size(); ++q) {
           const auto i = static_cast<std::size_t>(slots[q]);
-          sum += exact_weight(heuristics[h], scaled, i, p) * values[q][p] / static_cast<long double>(counts[i]);
+          sum += exact_weight(heuristics[h], scaled, i, p) * values[q][p] / counts[i];
         }
         ASSERT_NEAR(found[h * kPoints + p], sum, tolerance) << to_string(isa) << ' ' << name(heuristics[h]);
       }

@@ -19,8 +19,8 @@ double chi_squared(std::span<const Count> counts) {
 }
 
 /// What χ² with `degrees` of freedom exceeds with probability at most `alpha`, and what it falls below with probability
-/// at most `alpha`: exact inequalities (B. Laurent & P. Massart, "Adaptive estimation of a quadratic functional by model
-/// selection", 2000, lemma 1).
+/// at most `alpha`: exact inequalities (B. Laurent & P. Massart, "Adaptive estimation of a quadratic functional by
+/// model selection", 2000, lemma 1).
 inline double chi_squared_upper(double degrees, double alpha) {
   const double t = -std::log(alpha);
   return degrees + 2 * std::sqrt(degrees * t) + 2 * t;

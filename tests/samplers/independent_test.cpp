@@ -5,6 +5,8 @@
 
 #include <array>
 
+#include "core/kernel_library.h"
+#include "samplers/kernels.h"
 #include "tests/samplers/chi_squared.h"
 #include "tests/samplers/points.h"
 
@@ -26,8 +28,8 @@ TEST(RandomWords, AreRandom123sPhiloxOnEveryIsaFromAnyBeginning) {
           std::size_t i = 0;
           for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(count); ++s) {
             for (std::uint32_t lane = 0; lane < kLanes; ++lane, ++i) {
-              const std::uint32_t word = random_word({stream.key0, stream.key1}, draw, dim, begin + s,
-                                                     stream.replicate + lane, stream.pixel);
+              const std::uint32_t word =
+                  random_word({stream.key0, stream.key1}, draw, dim, begin + s, stream.replicate + lane, stream.pixel);
               ASSERT_EQ(words[i], word >> shift) << to_string(isa) << " begin " << begin << " sample " << s;
             }
           }

@@ -29,8 +29,8 @@ TEST(NRooks, OnePointInEachStratumOfEveryDimension) {
 //
 // f = x + y: each dimension is N independent jittered strata, so 2 · 1/(12N³).
 // f = xy: write a_k, b_k for the point of each dimension in stratum k. Given all a and b, the estimate (1/N) Σ a_k
-// b_{π(k)} has mean ā·b̄ and variance S_a S_b / (N² (N−1)), S_a = Σ (a_k − ā)² (Hoeffding, "A combinatorial central limit
-// theorem", 1951). E S_a = Σ_k ((k+½)/N − ½)² + (N−1)/(12N²) = (N³−1)/(12N²), and ā has mean ½ and variance v =
+// b_{π(k)} has mean ā·b̄ and variance S_a S_b / (N² (N−1)), S_a = Σ (a_k − ā)² (Hoeffding, "A combinatorial central
+// limit theorem", 1951). E S_a = Σ_k ((k+½)/N − ½)² + (N−1)/(12N²) = (N³−1)/(12N²), and ā has mean ½ and variance v =
 // 1/(12N³), so Var = (N³−1)²/(144 N⁶ (N−1)) + v/2 + v². Leading term 1/(144N), that of the residual from additivity (M.
 // Stein, "Large sample properties of simulations using Latin hypercube sampling", 1987).
 //

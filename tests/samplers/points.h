@@ -1,6 +1,7 @@
 // All the points of a request at once, for tests.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -41,16 +42,13 @@ inline const StreamKey kTestKey = stream_key(20240229, "test", "points");
 /// The first `take` points (0: all) of `count` prepared ones, filled in blocks of `block` samples.
 inline Points points_of(Sampler& sampler, std::uint64_t count, const Layout& layout, std::uint32_t replicate = 0,
                         std::uint32_t pixel = 7, StreamKey key = kTestKey, std::uint64_t take = 0, int block = 256) {
-  sampler.prepare({.count = count,
-                   .layout = &layout,
-                   .key = key,
-                   .pixel = pixel,
-                   .replicate = replicate,
-                   .low_words = true});
+  sampler.prepare(
+      {.count = count, .layout = &layout, .key = key, .pixel = pixel, .replicate = replicate, .low_words = true});
   Points points(layout.dims(), take ? take : count);
   PointBlock words;
   for (std::uint64_t begin = 0; begin < points.count(); begin += static_cast<std::uint64_t>(block)) {
-    const int samples = static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(block), points.count() - begin));
+    const int samples =
+        static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(block), points.count() - begin));
     words.reset(layout.dims(), samples, true);
     sampler.fill(begin, words);
     for (int d = 0; d < layout.dims(); ++d) {

@@ -46,15 +46,33 @@ TEST(Strata, EdgesAreTheFractionsRoundedUpAndPointsStayInside) {
   }
 }
 
+TEST(Strata, ARowOfLanesIsPlacedLikeEachAlone) {
+  Strata strata;
+  for (const std::uint64_t count : {1u, 2u, 3u, 4u, 4096u, 4097u, 8192u, 1u << 20, 1u << 31}) {
+    strata.reset(count);
+    std::uint32_t cells[kLanes], words[kLanes], placed[kLanes];
+    for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+      cells[lane] = static_cast<std::uint32_t>((count - 1) * lane / (kLanes - 1));
+      words[lane] = placed[lane] = random_word(kTestKey, Draw::kHigh, 0, lane, 0, 0) | (lane < 2 ? ~0u : 0u);
+    }
+    strata.place_lanes(cells, placed);
+    for (int lane = 0; lane < kLanes; ++lane) ASSERT_EQ(placed[lane], strata.place(cells[lane], words[lane])) << count;
+  }
+}
+
 TEST(LanePermutation, IsABijectionInEveryLane) {
   LanePermutation permutation;
-  for (const std::uint64_t count : {1u, 2u, 3u, 5u, 64u, 65u, 1000u, 4095u, 4096u, 4097u, 5000u, 8191u, 8192u, 8193u, 100003u}) {
+  for (const std::uint64_t count :
+       {1u, 2u, 3u, 5u, 64u, 65u, 1000u, 4095u, 4096u, 4097u, 5000u, 8191u, 8192u, 8193u, 100003u}) {
     permutation.prepare(words_of(3), 11, count);
     std::vector<std::uint8_t> seen(count);
     for (int lane = 0; lane < kLanes; ++lane) {
       std::fill(seen.begin(), seen.end(), std::uint8_t{0});
       for (std::uint64_t i = 0; i < count; ++i) {
         const std::uint64_t image = permutation.at(i, lane);
+        std::uint32_t row[kLanes];
+        permutation.lanes(i, row);
+        ASSERT_EQ(row[lane], image);
         ASSERT_LT(image, count);
         ASSERT_EQ(seen[image]++, 0) << count << " lane " << lane << " index " << i;
       }
@@ -88,7 +106,8 @@ TEST(LanePermutation, EveryOrderOfAFewElementsIsEquallyLikely) {
 // π(j) − π(i) mod N. Bins of N = 5000 differ by at most one place in 312, which moves χ² by less than 1 here.
 void check_pairs(std::uint64_t count) {
   constexpr std::uint32_t kGroups = 4096;
-  constexpr std::array<std::array<std::uint64_t, 2>, 6> kPairs = {{{0, 1}, {0, 2}, {1, 2}, {0, 64}, {7, 4071}, {2499, 2500}}};
+  constexpr std::array<std::array<std::uint64_t, 2>, 6> kPairs = {
+      {{0, 1}, {0, 2}, {1, 2}, {0, 64}, {7, 4071}, {2499, 2500}}};
   std::array<std::array<std::uint32_t, 256>, kPairs.size()> joint = {};
   std::array<std::array<std::uint32_t, 32>, kPairs.size()> difference = {};
   std::array<std::uint32_t, 64> place = {};
@@ -107,8 +126,10 @@ void check_pairs(std::uint64_t count) {
   // False alarm 1e-8 each, 13 of them.
   EXPECT_LT(chi_squared(std::span<const std::uint32_t>(place)), chi_squared_upper(63, 1e-8)) << count;
   for (std::size_t p = 0; p < kPairs.size(); ++p) {
-    EXPECT_LT(chi_squared(std::span<const std::uint32_t>(joint[p])), chi_squared_upper(255, 1e-8)) << count << " pair " << p;
-    EXPECT_LT(chi_squared(std::span<const std::uint32_t>(difference[p])), chi_squared_upper(31, 1e-8)) << count << " pair " << p;
+    EXPECT_LT(chi_squared(std::span<const std::uint32_t>(joint[p])), chi_squared_upper(255, 1e-8))
+        << count << " pair " << p;
+    EXPECT_LT(chi_squared(std::span<const std::uint32_t>(difference[p])), chi_squared_upper(31, 1e-8))
+        << count << " pair " << p;
   }
 }
 

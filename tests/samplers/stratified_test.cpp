@@ -30,7 +30,8 @@ TEST(Stratified, SquarestGridIsTheNearestPairOfFactors) {
 TEST(Stratified, OnePointInEachCellOfEveryGroup) {
   const Layout layout = {{1, 2, 2, 1}};
   const auto sampler = sampler_named("stratified");
-  for (const std::uint64_t count : {1u, 2u, 3u, 4u, 6u, 7u, 12u, 64u, 97u, 100u, 1000u, 1024u, 4096u, 4099u, 4100u, 10000u}) {
+  for (const std::uint64_t count :
+       {1u, 2u, 3u, 4u, 6u, 7u, 12u, 64u, 97u, 100u, 1000u, 1024u, 4096u, 4099u, 4100u, 10000u}) {
     const Points points = points_of(*sampler, count, layout);
     const Grid grid = squarest_grid(count);
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -99,7 +100,8 @@ TEST(Stratified, VarianceIsThatOfTheJitteredGrid) {
   const auto sampler = sampler_named("stratified");
   for (const std::uint64_t count : {24u, 29u, 64u}) {
     const Grid grid = squarest_grid(count);
-    const double n = static_cast<double>(count), a = static_cast<double>(grid.columns), b = static_cast<double>(grid.rows);
+    const double n = static_cast<double>(count), a = static_cast<double>(grid.columns),
+                 b = static_cast<double>(grid.rows);
     const std::array<double, 2> exact = {(1 / (12 * a * a) + 1 / (12 * b * b)) / n, 1 / (12 * n * n * n)};
     std::array<double, 2> sum = {}, squares = {};
     for (std::uint32_t group = 0; group < kGroups; ++group) {

@@ -1,0 +1,171 @@
+// Two problems of one dimension whose estimators have exact variances: the estimates of one pair must have them.
+//
+// With one sample of each technique a pair's estimate is A(u₁) + B(u₂), independent, so its central moments are
+// m₂ = a₂ + b₂ and m₄ = a₄ + b₄ + 6 a₂ b₂. m₄ says how far a sample variance of n pairs strays from σ²: its standard
+// error is σ² √((κ − 1)/n), κ = m₄/σ⁴.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "scenes/integrand.h"
+#include "tests/estimators/estimates.h"
+
+namespace halfslope {
+namespace {
+
+constexpr int kPairs = 1 << 20;
+constexpr int kGrid = 1 << 17;  // midpoints of every quadrature
+
+/// Central moments of a random variable.
+struct Spread {
+  double mean = 0, m2 = 0, m4 = 0;
+};
+
+Spread operator+(const Spread& a, const Spread& b) {
+  return {a.mean + b.mean, a.m2 + b.m2, a.m4 + b.m4 + 6 * a.m2 * b.m2};
+}
+
+/// Of a quantity as a function of a uniform number.
+Spread spread_of(const std::function<double(double)>& of_u) {
+  Spread spread;
+  std::vector<double> values;
+  for (int i = 0; i < kGrid; ++i) values.push_back(of_u((i + 0.5) / kGrid));
+  for (const double v : values) spread.mean += v / kGrid;
+  for (const double v : values) {
+    const double d2 = (v - spread.mean) * (v - spread.mean);
+    spread.m2 += d2 / kGrid;
+    spread.m4 += d2 * d2 / kGrid;
+  }
+  return spread;
+}
+
+/// Estimates from one pair (or one sample) each.
+std::vector<double> one_pair_estimates(const IntegralSource& scene, const std::string& estimator) {
+  return estimate<double>(scene, 0, {.estimator = estimator, .rounds = 1, .replicates = kPairs, .seed = 2024})[0];
+}
+
+struct Published {
+  std::string estimator;
+  double variance;
+};
+
+/// `shape`: the moments by quadrature here, of which m₂ must be the published variance as well. 6 standard errors are
+/// passed by chance with probability 2e-9 for a normal deviate; the skewness of these sums, at most √(κ/n) = 0.03 where
+/// the variance is tested, makes that 1e-8 at most.
+void expect_variance(const IntegralSource& scene, const Published& published, const Spread& shape) {
+  const std::vector<double> estimates = one_pair_estimates(scene, published.estimator);
+  const MeanAndError found = mean_of(estimates);
+  const double exact = (*scene.closed_form(0))[0], variance = published.variance;
+  const std::string what = scene.fingerprint() + ' ' + published.estimator;
+  EXPECT_LE(std::fabs(found.mean - exact), 6 * std::sqrt(variance / kPairs) + 1e-14 * exact) << what;
+  if (variance < 1e-12 * exact * exact) return;  // rounding has the say
+  EXPECT_NEAR(shape.mean / exact, 1, 1e-4) << what;
+  EXPECT_NEAR(shape.m2 / variance, 1, 1e-3) << what;
+  const double kurtosis = shape.m4 / (variance * variance);
+  if (kurtosis > 1e3) return;  // too heavy a tail for this many pairs
+  const double sample_variance = found.standard_error * found.standard_error * kPairs;
+  EXPECT_LE(std::fabs(sample_variance / variance - 1), 6 * std::sqrt((kurtosis - 1) / kPairs) + 1e-12)
+      << what << ": " << sample_variance << " is not " << variance;
+}
+
+TEST(ExactVariance, ToyProblem) {
+  const auto scene = make_analytic_scene("mis-toy");
+  // w_light(x) of p₁ = 1, p₂ = 2x with β, and f = x.
+  const auto combined = [](double beta) {
+    const auto light = [beta](double x) { return 1 / (1 + std::pow(2 * x, beta)); };
+    return spread_of([light](double u) { return light(u) * u; }) +
+           spread_of([light](double u) { return (1 - light(std::sqrt(u))) / 2; });
+  };
+  expect_variance(*scene, {"light", 1.0 / 12}, spread_of([](double u) { return u; }));
+  expect_variance(*scene, {"bsdf", 0}, {});
+  expect_variance(*scene, {"average", 1.0 / 48}, spread_of([](double u) { return u / 2 + 0.25; }));
+  expect_variance(*scene, {"balance", 0.011110988148968387}, combined(1));
+  expect_variance(*scene, {"power:1", 0.011110988148968387}, combined(1));
+  expect_variance(*scene, {"power", 0.013250220050248314}, combined(2));
+  expect_variance(*scene, {"power:3", 0.020228413431753918}, combined(3));
+  expect_variance(*scene, {"power:4", 0.027833444461787576}, combined(4));
+  // ln 3 / 8 − (1/2 − ln 3 / 4)² − (ln 3 / 4)²
+  const double q = std::log(3.0) / 4;
+  EXPECT_NEAR(combined(1).m2, q / 2 - (0.5 - q) * (0.5 - q) - q * q, 1e-9);
+}
+
+struct Cap {
+  const char* scene;
+  double n, alpha, light, bsdf, average, balance, power;
+};
+
+void PrintTo(const Cap& cap, std::ostream* out) { *out << cap.scene; }
+
+class AlignedPhongCap : public testing::TestWithParam<Cap> {};
+
+TEST_P(AlignedPhongCap, HasItsExactVariances) {
+  const Cap& cap = GetParam();
+  const auto scene = make_analytic_scene(cap.scene);
+  const double n = cap.n, half = std::sin(cap.alpha / 2), v_max = 2 * half * half;  // v = 1 − cos θ
+  const long double mu_exactly = 1 - std::pow(std::cos(static_cast<long double>(cap.alpha)), cap.n + 1);
+  ASSERT_NEAR((*scene->closed_form(0))[0] / static_cast<double>(mu_exactly), 1, 1e-14);
+  const double p_light = 1 / (2 * std::numbers::pi * v_max);
+  const auto p_bsdf = [n](double v) { return (n + 1) / (2 * std::numbers::pi) * std::pow(1 - v, n); };
+  // Without weights, the value of a light sample is p_bsdf/p_light, of a BSDF sample 1 in the cone.
+  const auto light_weight = [&](double v, double beta) { return 1 / (1 + std::pow(p_bsdf(v) / p_light, beta)); };
+  const auto v_of_bsdf = [n](double u) { return -std::expm1(std::log1p(-u) / (n + 1)); };
+  const auto combined = [&](double beta) {
+    const Spread light =
+        spread_of([&](double u) { return light_weight(u * v_max, beta) * p_bsdf(u * v_max) / p_light; });
+    // Only the part of [0, 1) that falls into the cone, whose measure is μ, is worth something.
+    const double mu = -std::expm1((n + 1) * std::log1p(-v_max));
+    double first = 0;
+    std::vector<double> values;
+    for (int i = 0; i < kGrid; ++i) {
+      const double v = v_of_bsdf(mu * (i + 0.5) / kGrid);
+      values.push_back(1 - light_weight(v, beta));
+      first += mu * values.back() / kGrid;
+    }
+    Spread bsdf = {first, (1 - mu) * std::pow(first, 2), (1 - mu) * std::pow(first, 4)};
+    for (const double value : values) {
+      bsdf.m2 += mu * std::pow(value - first, 2) / kGrid;
+      bsdf.m4 += mu * std::pow(value - first, 4) / kGrid;
+    }
+    return light + bsdf;
+  };
+  const double q = -std::expm1((n + 1) * std::log1p(-v_max));
+  const Spread bernoulli = {q, q * (1 - q), q * (1 - q) * (1 - 3 * q * (1 - q))};
+  const Spread light = spread_of([&](double u) { return p_bsdf(u * v_max) / p_light; });
+  expect_variance(*scene, {"light", cap.light}, light);
+  expect_variance(*scene, {"bsdf", cap.bsdf}, bernoulli);
+  const Spread sum = light + bernoulli;
+  expect_variance(*scene, {"average", cap.average}, {sum.mean / 2, sum.m2 / 4, sum.m4 / 16});
+  expect_variance(*scene, {"balance", cap.balance}, combined(1));
+  expect_variance(*scene, {"power", cap.power}, combined(2));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    NAndAlpha, AlignedPhongCap,
+    testing::Values(Cap{"aligned-phong-cap:n=10,alpha=0.05", 10, 0.05, 2.432200069450513e-09, 0.013474917125694241,
+                        0.0033687298894735777, 2.449997212925192e-06, 2.8987465303088264e-09},
+                    Cap{"aligned-phong-cap:n=1,alpha=0.2", 1, 0.2, 5.2626707917433225e-08, 0.03791166133160433,
+                        0.00947792848957806, 5.471065213688093e-05, 1.4388930249531274e-07},
+                    Cap{"aligned-phong-cap:n=10000,alpha=0.01", 10000, 0.01, 0.0032126942860631756, 0.23865875551893376,
+                        0.06046786245124924, 0.020615636319222422, 0.006386093641269864},
+                    Cap{"aligned-phong-cap:n=100,alpha=0.01", 100, 0.01, 5.286618602175076e-11, 0.005011978997817704,
+                        0.0012529947626709723, 1.2595956331612667e-07, 5.608519103978012e-11},
+                    Cap{"aligned-phong-cap:n=10,alpha=0.01", 10, 0.01, 6.2990381283560985e-15, 0.0005495555958422792,
+                        0.00013738889896214456, 1.6597842493415332e-10, 6.349262517832386e-15},
+                    Cap{"aligned-phong-cap:n=1000,alpha=0.8", 1000, 0.8, 150.87415318712192, 0, 37.71853829678048,
+                        0.01809049328521886, 0.004158578612201627},
+                    Cap{"aligned-phong-cap:n=10000,alpha=0.8", 10000, 0.8, 1515.6939270231392, 0, 378.9234817557848,
+                        0.0026284731899244556, 0.00042291265907067207},
+                    Cap{"aligned-phong-cap:n=100,alpha=0.8", 100, 0.8, 14.392511731092368, 1.4062070720451987e-16,
+                        3.598127932773092, 0.08661737120830017, 0.035895228585606405},
+                    Cap{"aligned-phong-cap:n=10,alpha=0.2", 10, 0.2, 0.00013319842862834685, 0.15920026579312924,
+                        0.0398333660554394, 0.004471128435898644, 0.00034253916867763197},
+                    Cap{"aligned-phong-cap:n=10000,alpha=0.2", 10000, 0.2, 98.68206110956625, 0, 24.670515277391562,
+                        0.02516798192969775, 0.006321313862650276}));
+
+}  // namespace
+}  // namespace halfslope
