@@ -80,8 +80,9 @@ CellStatistics summarise(const CellData& data) {
 
   const bool not_positive =
       (!mse.value && std::isfinite(data.mse.mean)) || (!relmse.value && std::isfinite(data.relmse.mean));
+  row.invalid = data.nonfinite > 0 || !std::isfinite(data.mse.mean);
   Status status;
-  status.mark_if(data.nonfinite > 0, "invalid");
+  status.mark_if(row.invalid, "invalid");
   status.mark_if(exact, "exact");
   status.mark_if(deterministic, "deterministic");
   status.mark_if(!deterministic && data.replicates < kCertifiedReplicates, "few-replicates");

@@ -50,6 +50,7 @@ struct CellStatistics {
       kurtosis, median_abs_error;
   double reference = 0, reference_se = 0, reference_mse = 0;
   std::int64_t nonfinite = 0;
+  bool invalid = false;
   std::string status;  ///< "ok", or several marks joined by ';'
 };
 
@@ -65,8 +66,8 @@ struct CellStatistics {
 ///   their
 ///               variances
 ///
-/// Marks, in this order: `invalid` (non-finite estimates were met); `exact` (every error is 0; rmse is 0, without
-/// interval); `deterministic` (the sampler is, or R = 1: variance, kurtosis and intervals are empty); `few-replicates`
+/// Marks, in this order: `invalid` (an estimate is not finite, or a reference, or their squared errors); `exact` (every
+/// error is 0; rmse is 0, without interval); `deterministic` (the sampler is, or R = 1: variance, kurtosis and intervals are empty); `few-replicates`
 /// (R < 16) and `heavy-tailed` (kurtosis > max(5, R/40)): the intervals are not certified; `reference-limited` (V̄ > 10
 /// % of M, or a difference M − V̄ that is not positive, whose root is then empty).
 CellStatistics summarise(const CellData& data);

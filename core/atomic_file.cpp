@@ -33,25 +33,6 @@ class Descriptor {
   int descriptor_;
 };
 
-/// The name of a temporary, unlinked with its scope unless it was renamed.
-class Temporary {
- public:
-  explicit Temporary(std::string name) : name_(std::move(name)) {}
-  ~Temporary() {
-    if (!name_.empty()) ::unlink(name_.c_str());
-  }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  bool rename_to(const std::filesystem::path& path) {
-    if (::rename(name_.c_str(), path.c_str()) != 0) return false;
-    name_.clear();
-    return true;
-  }
-
- private:
-  std::string name_;
-};
-
 bool write_all(int descriptor, std::string_view bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
@@ -71,29 +52,48 @@ bool sync(int descriptor) {
 
 }  // namespace
 
-void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
-  const auto fail_with_errno = [&] { fail(ExitCode::kIo, "{}: cannot be written: {}", path.string(), reason(errno)); };
+AtomicFile::AtomicFile(std::filesystem::path path)
+    : path_(std::move(path)), folder_(path_.has_parent_path() ? path_.parent_path() : ".") {
   struct stat existing {};
-  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
-    fail(ExitCode::kIo, "{}: cannot be written: it is not a regular file", path.string());
+  if (::stat(path_.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) {
+    fail(ExitCode::kIo, "{}: cannot be written: it is not a regular file", path_.string());
   }
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
-
   // O_EXCL makes a name that another thread, or a process on another machine, has taken lead to the next one.
-  std::string name;
-  int descriptor = -1;
-  for (int attempt = 0; descriptor < 0; ++attempt) {
-    name = folder / fmt::format(".halfslope-{}-{}.tmp", ::getpid(), attempt);
-    descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor < 0 && errno != EEXIST && errno != EINTR) fail_with_errno();
+  for (int attempt = 0; descriptor_ < 0; ++attempt) {
+    const std::string name = folder_ / fmt::format(".halfslope-{}-{}.tmp", ::getpid(), attempt);
+    descriptor_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ >= 0) temporary_ = name;
+    if (descriptor_ < 0 && errno != EEXIST && errno != EINTR) fail_with_errno();
   }
-  Temporary temporary(std::move(name));
-  Descriptor file(descriptor);
-  if (!write_all(file.get(), bytes) || !sync(file.get()) || !file.close()) fail_with_errno();
-  if (!temporary.rename_to(path)) fail_with_errno();
+}
 
-  const Descriptor folder_file(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (folder_file.get() < 0 || !sync(folder_file.get())) fail_with_errno();
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+}
+
+void AtomicFile::fail_with_errno() const {
+  fail(ExitCode::kIo, "{}: cannot be written: {}", path_.string(), reason(errno));
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  if (!write_all(descriptor_, bytes)) fail_with_errno();
+}
+
+void AtomicFile::commit() {
+  Descriptor file(std::exchange(descriptor_, -1));
+  // A file system may report only on closing that it lost a write.
+  if (!sync(file.get()) || !file.close()) fail_with_errno();
+  if (::rename(temporary_.c_str(), path_.c_str()) != 0) fail_with_errno();
+  temporary_.clear();
+  const Descriptor folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.get() < 0 || !sync(folder.get())) fail_with_errno();
+}
+
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
 }
 
 std::string read_file(const std::filesystem::path& path) {

@@ -47,4 +47,9 @@ std::string CsvWriter::text() && {
   return std::move(text_);
 }
 
+std::string CsvWriter::take_text() {
+  assert_equal(cells_in_row_, std::size_t{0}, "cells in a row not ended");
+  return std::exchange(text_, {});
+}
+
 }  // namespace halfslope

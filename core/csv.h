@@ -45,6 +45,8 @@ class CsvWriter {
   /// Every row ended so far, header first.
   const std::string& text() const&;
   std::string text() &&;
+  /// The text so far, which is forgotten: rows go on without a header, so that a long table need not be in memory.
+  std::string take_text();
 
  private:
   CsvWriter& raw_cell(std::string_view value);

@@ -99,7 +99,10 @@ Isa active_isa() {
   return supported_isas().back();
 }
 
-std::string isa_class(Isa isa) { return isa == Isa::kBaseline ? "baseline" : "fma"; }
+std::string isa_class(Isa isa) {
+  // The scalar build takes its exp, log and pow from the C library, so it is a class of its own.
+  return isa == Isa::kAvx2 || isa == Isa::kAvx512 ? "fma" : to_string(isa);
+}
 
 const void* kernel_table(Isa isa, const char* symbol) {
   static std::mutex mutex;

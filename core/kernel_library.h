@@ -16,7 +16,7 @@ Isa active_isa();
 /// The sets that this processor can run, poorest first.
 std::vector<Isa> supported_isas();
 
-/// "fma" for every set but the baseline: results are the same bits within a class.
+/// "fma" for avx2 and avx512, else the set's own name: results are the same bits within a class.
 std::string isa_class(Isa isa);
 
 /// The function `symbol` (extern "C", returns a pointer to a room's table of kernels) of the library for `isa`, called.

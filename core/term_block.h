@@ -28,7 +28,7 @@ class TermBlock {
   std::size_t stride() const { return stride_; }
   int channels() const { return channels_; }
   int densities() const { return densities_; }
-  const T* data() const { return data_.data(); }
+  T* data() { return data_.data(); }
 
  private:
   T* at(int slot, int row) {

@@ -109,8 +109,7 @@ struct Local {
       light.reaches = light_reaches(receiver, primitive, own);
       light.shape =
           local_shape<T>(primitive, receiver, to_local, scale, own, light_of[static_cast<std::size_t>(index)]);
-      light.pdf_area =
-          static_cast<T>(1 / (scaled_area(primitive, scale) * static_cast<double>(light_indices.size())));
+      light.pdf_area = static_cast<T>(1 / (scaled_area(primitive, scale) * static_cast<double>(light_indices.size())));
       if (light.reaches) copy(primitive.radiance, light.radiance);
       lights.push_back(light);
     }

@@ -5,36 +5,84 @@
 
 namespace halfslope::kernel {
 
-template <class T>
-void fold(const FoldCall<T>& call) {
+namespace {
+
+/// How many of something a loop runs over: known to the compiler where kFixed > 0, so that the loop is unrolled and its
+/// arrays are registers.
+template <int kFixed>
+struct Count {
+  int value;
+  constexpr operator int() const { return kFixed > 0 ? kFixed : value; }
+};
+
+/// Turns the densities of every slot into ratios r_k, which all heuristics share.
+template <class T, int kTechniques>
+void ratios_in_place(const FoldCall<T>& call, Count<kTechniques> techniques) {
   using F = NativePacket<T>;
-  constexpr int kMostTechniques = 16, kMostOutputs = 3 * kMostHeuristics;
-  const std::size_t slot_size = static_cast<std::size_t>(call.channels + call.techniques) * call.stride;
-  const bool single = call.techniques == 1;
-  for (std::size_t p = 0; p < call.count; p += kWidth<F>) {
-    F out[kMostOutputs];
-    for (int o = 0; o < call.heuristic_count * call.channels; ++o) out[o] = F(T(0));
-    for (int q = 0; q < call.slots; ++q) {
-      const T* slot = call.terms + static_cast<std::size_t>(q) * slot_size + p;
-      const int i = call.slot_technique[q];
-      F ratios[kMostTechniques];
-      if (!single) {
-        for (int k = 0; k < call.techniques; ++k) {
-          ratios[k] = F(call.counts[k]) * load<F>(slot + static_cast<std::size_t>(call.channels + k) * call.stride);
-        }
-        to_ratios(ratios, call.techniques);
+  constexpr int kMostTechniques = 16;
+  const std::size_t rows = static_cast<std::size_t>(call.channels + call.techniques);
+  for (int q = 0; q < call.slots; ++q) {
+    T* pdfs = call.terms + (static_cast<std::size_t>(q) * rows + static_cast<std::size_t>(call.channels)) * call.stride;
+    for (std::size_t p = 0; p < call.count; p += kWidth<F>) {
+      F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
+      for (int k = 0; k < techniques; ++k) {
+        ratios[k] = F(call.counts[k]) * load<F>(pdfs + static_cast<std::size_t>(k) * call.stride + p);
       }
-      const F share(T(1) / call.counts[i]);
-      for (int h = 0; h < call.heuristic_count; ++h) {
-        const F w = share * weight(call.heuristics[h], ratios, call.techniques, i);
-        for (int c = 0; c < call.channels; ++c) {
-          F& sum = out[h * call.channels + c];
-          sum = fma(w, load<F>(slot + static_cast<std::size_t>(c) * call.stride), sum);
-        }
+      to_ratios(ratios, techniques);
+      for (int k = 0; k < techniques; ++k) store(pdfs + static_cast<std::size_t>(k) * call.stride + p, ratios[k]);
+    }
+  }
+}
+
+/// One heuristic's estimate from each point's round.
+template <class T, int kTechniques, int kSlots, int kChannels>
+void weigh(const FoldCall<T>& call, Heuristic heuristic, Count<kTechniques> techniques, Count<kSlots> slots,
+           Count<kChannels> channels, T* const* out) {
+  using F = NativePacket<T>;
+  constexpr int kMostTechniques = 16, kMostChannels = 3;
+  const std::size_t rows = static_cast<std::size_t>(call.channels + call.techniques);
+  for (std::size_t p = 0; p < call.count; p += kWidth<F>) {
+    F sums[kMostChannels];
+    for (int c = 0; c < channels; ++c) sums[c] = F(T(0));
+    for (int q = 0; q < slots; ++q) {
+      const T* values = call.terms + static_cast<std::size_t>(q) * rows * call.stride + p;
+      const T* pdfs = values + static_cast<std::size_t>(call.channels) * call.stride;
+      const int i = call.slot_technique[q];
+      F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
+      ratios[0] = load<F>(pdfs);
+      for (int k = 1; k < techniques; ++k) ratios[k] = load<F>(pdfs + static_cast<std::size_t>(k) * call.stride);
+      const F w = F(T(1) / call.counts[i]) * weight(heuristic, ratios, techniques, i);
+      for (int c = 0; c < channels; ++c) {
+        sums[c] = fma(w, load<F>(values + static_cast<std::size_t>(c) * call.stride), sums[c]);
       }
     }
-    for (int o = 0; o < call.heuristic_count * call.channels; ++o) store(call.out[o] + p, out[o]);
+    for (int c = 0; c < channels; ++c) store(out[c] + p, sums[c]);
   }
+}
+
+/// A pair of techniques, one sample each, on a grey scene is what most experiments do: it gets loops of its own.
+template <class T>
+void weigh_all(const FoldCall<T>& call) {
+  for (int h = 0; h < call.heuristic_count; ++h) {
+    T* const* out = call.out + h * call.channels;
+    if (call.techniques == 2 && call.slots == 2 && call.channels == 1) {
+      weigh(call, call.heuristics[h], Count<2>{2}, Count<2>{2}, Count<1>{1}, out);
+    } else {
+      weigh(call, call.heuristics[h], Count<0>{call.techniques}, Count<0>{call.slots}, Count<0>{call.channels}, out);
+    }
+  }
+}
+
+}  // namespace
+
+template <class T>
+void fold(const FoldCall<T>& call) {
+  if (call.techniques == 2) {
+    ratios_in_place(call, Count<2>{2});
+  } else if (call.techniques > 2) {
+    ratios_in_place(call, Count<0>{call.techniques});
+  }
+  weigh_all(call);
 }
 template void fold<float>(const FoldCall<float>&);
 template void fold<double>(const FoldCall<double>&);

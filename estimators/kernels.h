@@ -24,8 +24,6 @@ struct LightingCall {
 
 /// How the terms of a round are weighted; see estimators/heuristics.h.
 enum class HeuristicKind : std::uint8_t { kSingle, kAverage, kBalance, kPower };
-/// Heuristics that one fold takes at most.
-inline constexpr int kMostHeuristics = 16;
 struct Heuristic {
   HeuristicKind kind = HeuristicKind::kSingle;
   double parameter = 0;  ///< β of the power heuristic
@@ -35,7 +33,7 @@ struct Heuristic {
 /// the densities. out[h · channels + c] receives heuristic h's estimate from each point's round.
 template <class T>
 struct FoldCall {
-  const T* terms;
+  T* terms;  ///< densities are overwritten: with c_k p_k over the largest of them
   std::size_t stride, count;
   int slots, channels, techniques;
   const int* slot_technique;  ///< which technique of the set each slot draws

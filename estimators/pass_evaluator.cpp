@@ -80,23 +80,21 @@ void PassEvaluator<T>::sum_points(const Integral& integral, std::uint64_t begin,
     sampler_->fill(first, points_);
     terms_.reset(static_cast<int>(calls_.size()), channels_, static_cast<int>(allocation_.techniques.size()), samples);
     for (const TechniqueCall& call : calls_) integral.sample(call, points_, terms_);
-    for (std::size_t h = 0; h < heuristics_.size(); h += kMostHeuristics) {
-      const FoldCall<T> fold = {terms_.data(),
-                                terms_.stride(),
-                                points_.stride(),
-                                static_cast<int>(calls_.size()),
-                                channels_,
-                                static_cast<int>(allocation_.techniques.size()),
-                                slot_technique_.data(),
-                                counts_.data(),
-                                heuristics_.data() + h,
-                                static_cast<int>(std::min<std::size_t>(kMostHeuristics, heuristics_.size() - h)),
-                                outputs_.data() + h * static_cast<std::size_t>(channels_)};
-      if constexpr (std::is_same_v<T, float>) {
-        kernels_.fold_f32(fold);
-      } else {
-        kernels_.fold_f64(fold);
-      }
+    const FoldCall<T> fold = {terms_.data(),
+                              terms_.stride(),
+                              points_.stride(),
+                              static_cast<int>(calls_.size()),
+                              channels_,
+                              static_cast<int>(allocation_.techniques.size()),
+                              slot_technique_.data(),
+                              counts_.data(),
+                              heuristics_.data(),
+                              static_cast<int>(heuristics_.size()),
+                              outputs_.data()};
+    if constexpr (std::is_same_v<T, float>) {
+      kernels_.fold_f32(fold);
+    } else {
+      kernels_.fold_f64(fold);
     }
     const auto outputs = static_cast<int>(outputs_.size());
     if constexpr (std::is_same_v<T, float>) {

@@ -19,15 +19,15 @@ namespace {
 std::string key_help(const std::string& key) {
   static const std::map<std::string, std::string> kHelp = {
       {"name", "the experiment's name; the default run folder is out/NAME"},
-      {"scene", "catalogue names, or paths of Mitsuba 3 .xml files"},
+      {"scene", "see `halfslope list scenes`; or paths of Mitsuba 3 .xml files"},
       {"estimators", "HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: all that the scene has"},
       {"samplers", "see `halfslope list samplers`"},
-      {"samples", "sample counts N: 4:1024 for powers of two, or a list"},
-      {"replicates", "independent randomisations (default 64)"},
+      {"samples", "sample counts N: 4:1024 for the powers of two from 4 to 1024, or a list"},
+      {"replicates", "independent repetitions that errors are measured over (default 64)"},
       {"seed", "of every random number (default 1)"},
       {"resolution", "WIDTH,HEIGHT; default: the scene's own"},
-      {"pixels", "all, or how many to choose"},
-      {"images", "sample counts to write EXRs for, or none"},
+      {"pixels", "all, or how many to measure (default all)"},
+      {"images", "sample counts to write EXRs for, or none (default none)"},
       {"precision", "f32, f64 or both (default f32)"},
   };
   const auto found = kHelp.find(key);
@@ -66,6 +66,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
+      "Environment: HALFSLOPE_ISA (scalar, baseline, avx2, avx512) chooses the kernels, HALFSLOPE_CACHE the folder of "
+      "references, HALFSLOPE_KERNELS where kernels are looked for first.\n"
       "Exit codes: 0 done, 1 a check failed or a cell is invalid, 2 usage, 3 bad input, 4 input/output, 130 "
       "interrupted.");
 
@@ -78,13 +80,13 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
             "--" + key, [&run, key](const std::string& value) { run.keys[key] = value; }, key_help(key))
         ->type_name("VALUE");
   }
-  run_app->add_option("--out", run.out, "run folder")->type_name("DIR");
+  run_app->add_option("--out", run.out, "run folder (default: out/NAME)")->type_name("DIR");
   run_app->add_option("--threads", run.threads, "threads; the results do not depend on it (default: all cores)")
       ->check(CLI::Range(1, 4096));
   run_app->add_flag("--quiet", run.quiet, "no progress, no summary");
   run_app->add_flag("--dry-run", run.dry_run, "print the plan and what is skipped and why; measure nothing");
-  run_app->add_flag("--overwrite", run.overwrite, "start afresh in a folder that holds another experiment");
-  run_app->add_flag("--json", run.json, "print convergence.csv's rows as JSON");
+  run_app->add_flag("--overwrite", run.overwrite, "remove the results that the run folder holds and start afresh");
+  run_app->add_flag("--json", run.json, "print the rows of convergence.csv as JSON instead of the summary");
 
   ListArguments list;
   bool names_only = false;
@@ -97,7 +99,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   CLI::App* points_app = app.add_subcommand("points", "print a sampler's points as CSV");
   points_app->add_option("--sampler", points.sampler, "see `halfslope list samplers`")->required()->type_name("NAME");
   points_app->add_option("--count", points.count, "number of points N")->capture_default_str()->type_name("N");
-  points_app->add_option("--dims", points.dims, "dimensions, taken as pairs")->capture_default_str()->type_name("D");
+  points_app->add_option("--dims", points.dims, "dimensions, grouped in pairs")->capture_default_str()->type_name("D");
   points_app->add_option("--replicate", points.replicate, "which randomisation")->capture_default_str()->type_name("K");
   points_app->add_option("--pixel", points.pixel, "which pixel's")->capture_default_str()->type_name("P");
   points_app->add_option("--seed", points.seed, "of the random numbers")->capture_default_str()->type_name("S");
@@ -133,7 +135,9 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       ->add_option("--relative-error", reference.relative_error,
                    "rms of the pixels' relative standard errors to reach (default 1e-5 up to 64 pixels, else 1e-3)")
       ->type_name("X");
-  reference_app->add_option("--max-replicates", reference.most_replicates, "stop with an error beyond these")
+  reference_app
+      ->add_option("--max-replicates", reference.most_replicates,
+                   "the most replicates to spend; an error if they do not suffice")
       ->capture_default_str()
       ->type_name("R")
       ->check(CLI::Range(16, 1 << 24));
@@ -190,7 +194,7 @@ int command_line(int argc, const char* const* argv, const Catalogue& catalogue) 
   } catch (const std::exception& error) {
     fmt::print(stderr, "halfslope: {}\n", error.what());
   }
-  if (std::fflush(stdout) != 0) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     fmt::print(stderr, "halfslope: standard output could not be written\n");
     code = code == 0 ? static_cast<int>(ExitCode::kIo) : code;
   }

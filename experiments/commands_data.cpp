@@ -144,16 +144,13 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const auto source = make_source(catalogue, a.scene, a.resolution);
   const Estimator estimator = flag("--estimator", [&] { return parse_estimator(a.estimator, source->techniques()); });
   const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(a.sampler); });
-  const auto round = static_cast<std::uint64_t>(estimator.allocation.round());
-  if (a.samples == 0 || a.samples % round != 0) {
-    fail(ExitCode::kUsage, "--samples: '{}' takes {} samples a round; the nearest legal to {}: {}", a.estimator, round,
-         a.samples, (a.samples / round + 1) * round);
-  }
   const Layout layout = estimator.allocation.layout(source->techniques());
-  if (sampler->illegal(a.samples / round, layout)) {
-    fail(ExitCode::kUsage, "--samples: sampler '{}' cannot make {} points in {} dimensions", a.sampler,
-         a.samples / round, layout.dims());
+  if (layout.dims() > sampler->info().max_dims) {
+    fail(ExitCode::kUsage, "--sampler: '{}' has {} dimensions; '{}' on scene '{}' takes {}", a.sampler,
+         sampler->info().max_dims, a.estimator, a.scene, layout.dims());
   }
+  if (const std::string problem = illegal_samples(estimator, *sampler, layout, a.samples); !problem.empty())
+    fail(ExitCode::kUsage, "--samples: {}", problem);
   const auto channels = static_cast<std::size_t>(source->channels());
   Reference picture;  // one replicate: values without a variance
   picture.value.resize(static_cast<std::size_t>(source->pixels()) * channels);
@@ -197,7 +194,7 @@ int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
                                    {"value", reference.value[i]},
                                    {"se", std::sqrt(reference.variance[i])}});
     }
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
   } else if (a.out.empty()) {
     CsvWriter csv({"scene", "pixel", "channel", "value", "se"});
     for (std::size_t i = 0; i < reference.value.size(); ++i) {
@@ -205,6 +202,8 @@ int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
     }
     fmt::print("{}", csv.text());
   }
+  if (const auto pixel = reference.first_nonfinite(source->channels()))
+    fail(ExitCode::kCheckFailed, "scene '{}': the reference is not finite, first at pixel {}", a.scene, pixels[*pixel]);
   return kDone;
 }
 

@@ -47,7 +47,7 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
              "", ""},
             {"deterministic", "one replicate: no variance, no kurtosis, no intervals", "", ""},
             {"exact", "every error is 0", "", ""},
-            {"invalid", "non-finite estimates were met; manifest.json names the first", "", ""},
+            {"invalid", "an estimate or a reference is not finite; manifest.json names the first", "", ""},
             {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
             {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""}};
   }
@@ -71,7 +71,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
                               {"units", plan.units.size()},
                               {"evaluations", plan.evaluations()},
                               {"skipped", plan.skips}}
-                             .dump(2));
+                             .dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
       fmt::print("{}", describe_plan(spec, plan));
     }
@@ -86,7 +86,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
     fmt::print("{}\nTables and images: {}\n", summary(outcome.plan, outcome.results), out);
   }
   if (outcome.invalid_cells > 0) {
-    fmt::print(stderr, "halfslope: {} of {} cells are invalid (non-finite estimates); see {}/manifest.json\n",
+    fmt::print(stderr, "halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",
                outcome.invalid_cells, outcome.plan.cells.size(), out);
     return static_cast<int>(ExitCode::kCheckFailed);
   }

@@ -129,6 +129,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   outcome.plan = make_plan(spec, catalogue);
   const Plan& plan = outcome.plan;
   const RunFolder folder(options.out);
+  if (options.overwrite) folder.remove_results();
   Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, options.overwrite);
   if (journal.dropped_bytes() > 0 && !options.quiet) {
     fmt::print(stderr,
@@ -139,17 +140,24 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
   journal.sync();
 
-  outcome.results = collect_results(plan, references, journal, catalogue.samplers, options.threads,
-                                    [&](std::size_t cell, const FoldedCell& folded) {
-                                      if (plan.cells[cell].image)
-                                        write_cell_image(folder.path(), plan, plan.cells[cell], folded, references);
-                                    });
-  for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.nonfinite > 0 ? 1 : 0;
+  AtomicFile replicates_file(folder.path("replicates.csv"));
+  ReplicatesTable replicates;
+  const CellVisitor visitor = {
+      [&](const Cell& cell, const FoldedCell& folded) {
+        if (cell.image) write_cell_image(folder.path(), plan, cell, folded, references);
+      },
+      [&](const Cell& cell, const FoldedCell& folded) {
+        replicates.add(plan, cell, folded.data.per_replicate);
+        replicates_file.write(replicates.take_text());
+      },
+  };
+  outcome.results = collect_results(plan, references, journal, catalogue.samplers, options.threads, visitor);
+  replicates_file.commit();
+  for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.invalid ? 1 : 0;
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) write_file_atomically(folder.path(name), text);
   };
   write_reference_images(folder.path(), plan, references);
-  write("replicates.csv", replicates_csv(plan, outcome.results));
   write("rates.csv", rates_csv(plan, outcome.results));
   write("regions.csv", regions_csv(plan, outcome.results));
   write("convergence.csv", convergence_csv(plan, outcome.results));

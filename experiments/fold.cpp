@@ -133,7 +133,9 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
     }
   }
   SpreadSums spread;
-  for (const Moments& m : merged) spread.add(m);
+  if (pass.batches() > 1) {
+    for (const Moments& m : merged) spread.add(m);
+  }
   data.sum_m2 = m2.value() + spread.m2;
   data.sum_m2_squared = m2_squared.value() + spread.m2_squared;
   data.sum_m4 = m4.value() + spread.m4;

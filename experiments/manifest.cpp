@@ -24,6 +24,9 @@ std::string now_utc() {
                      utc.tm_hour, utc.tm_min, utc.tm_sec);
 }
 
+// A path need not be UTF-8; replacing its odd bytes beats refusing it after the run.
+std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; }
+
 Json optional(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
 
 }  // namespace
@@ -57,18 +60,22 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
                                       {"mean", references[s].mean},
                                       {"mean_se", references[s].mean_se},
                                       {"mean_variance", references[s].mean_variance}});
+    if (const auto pixel = references[s].first_nonfinite(plan.scenes[s].source->channels()))
+      manifest["references"].back()["first_nonfinite_pixel"] = plan.scenes[s].pixels[*pixel];
   }
   manifest["invalid"] = Json::array();
   for (std::size_t c = 0; c < plan.cells.size(); ++c) {
     const CellResult& result = results.cells[c];
-    if (result.statistics.nonfinite == 0) continue;
-    manifest["invalid"].push_back({{"cell", cell_name(plan, plan.cells[c])},
-                                   {"nonfinite", result.statistics.nonfinite},
-                                   {"first_replicate", result.first_bad_replicate},
-                                   {"first_pixel", result.first_bad_pixel},
-                                   {"seed", spec.seed}});
+    if (!result.statistics.invalid) continue;
+    Json entry = {{"cell", cell_name(plan, plan.cells[c])}, {"nonfinite", result.statistics.nonfinite}};
+    if (result.statistics.nonfinite > 0) {
+      entry["first_replicate"] = result.first_bad_replicate;
+      entry["first_pixel"] = result.first_bad_pixel;
+      entry["seed"] = spec.seed;
+    }
+    manifest["invalid"].push_back(std::move(entry));
   }
-  return manifest.dump(2) + "\n";
+  return text_of(manifest);
 }
 
 std::string cells_json(const Plan& plan, const Results& results) {
@@ -100,7 +107,7 @@ std::string cells_json(const Plan& plan, const Results& results) {
                      {"nonfinite", s.nonfinite},
                      {"status", s.status}});
   }
-  return cells.dump(2) + "\n";
+  return text_of(cells);
 }
 
 }  // namespace halfslope

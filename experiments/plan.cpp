@@ -53,23 +53,10 @@ std::vector<int> choose_pixels(int total, std::optional<std::int64_t> wanted) {
 // The counts of the spec that the allocation and the sampler can take.
 std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estimator, const Sampler& sampler,
                                         const Layout& layout, Plan& plan) {
-  const auto round = static_cast<std::uint64_t>(estimator.allocation.round());
   std::vector<std::uint64_t> legal, skipped;
   std::string why;
   for (const std::uint64_t n : spec.samples.counts) {
-    std::string problem;
-    if (n % round != 0) {
-      const std::uint64_t below = n / round * round;
-      problem = fmt::format("'{}' takes {} samples a round, so N = {} does not divide; the nearest legal: {}{}",
-                            estimator.name, round, n, below > 0 ? std::to_string(below) + " and " : "", below + round);
-    } else if (const auto neighbours = sampler.illegal(n / round, layout)) {
-      std::string nearest;
-      for (const auto& m : {neighbours->below, neighbours->above}) {
-        if (m) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*m * round);
-      }
-      problem = fmt::format("sampler '{}' cannot make N = {} in {} dimensions for '{}'; the nearest legal: {}",
-                            sampler.info().name, n, layout.dims(), estimator.name, nearest);
-    }
+    const std::string problem = illegal_samples(estimator, sampler, layout, n);
     if (problem.empty()) {
       legal.push_back(n);
     } else if (!spec.samples.is_range) {
@@ -89,7 +76,9 @@ std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estim
 PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std::string& name, Plan& plan) {
   PlannedScene scene;
   scene.name = name;
-  scene.source = at(spec, "scene", [&] { return catalogue.make_scene(name, spec.resolution); });
+  const auto make = [&] { return catalogue.make_scene(name, spec.resolution); };
+  // A file's fault stays the file's, whoever named it: its errors begin with its own line.
+  scene.source = name.ends_with(".xml") ? make() : at(spec, "scene", make);
   scene.pixels = choose_pixels(scene.source->pixels(), spec.pixels);
   auto names = spec.estimators;
   if (names.empty()) {
@@ -173,6 +162,24 @@ void note_sharing(Plan& plan) {
 }
 
 }  // namespace
+
+std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, const Layout& layout,
+                            std::uint64_t samples) {
+  const auto round = static_cast<std::uint64_t>(estimator.allocation.round());
+  if (samples % round != 0) {
+    const std::uint64_t below = samples / round * round;
+    return fmt::format("'{}' takes {} samples a round, so N = {} does not divide; the nearest legal: {}{}",
+                       estimator.name, round, samples, below > 0 ? std::to_string(below) + " and " : "", below + round);
+  }
+  const auto neighbours = sampler.illegal(samples / round, layout);
+  if (!neighbours) return "";
+  std::string nearest;
+  for (const auto& m : {neighbours->below, neighbours->above}) {
+    if (m) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*m * round);
+  }
+  return fmt::format("sampler '{}' cannot make N = {} in {} dimensions for '{}'; the nearest legal: {}",
+                     sampler.info().name, samples, layout.dims(), estimator.name, nearest);
+}
 
 std::uint64_t Pass::evaluations() const {
   return sequence ? samples.back() : std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});

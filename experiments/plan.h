@@ -71,6 +71,11 @@ struct Plan {
 /// techniques that a scene lacks, N that a sampler cannot take (naming the legal neighbours).
 Plan make_plan(const Spec& spec, const Catalogue& catalogue);
 
+/// Why the estimator cannot take N = `samples` of these points, `layout` being its allocation's, and which N next to it
+/// it can; empty if it can.
+std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, const Layout& layout,
+                            std::uint64_t samples);
+
 /// "aligned-phong-cap:n=10,alpha=0.05,balance,halton-owen,f64,64": a cell in messages, and what seeds its bootstrap.
 std::string cell_name(const Plan& plan, const Cell& cell);
 

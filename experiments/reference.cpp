@@ -67,7 +67,11 @@ class Renderer {
     rounds_ = {std::max<std::uint64_t>(1, goal.compare_samples / round),
                std::max<std::uint64_t>(2, goal.samples / round)};
     if (rounds_[0] >= rounds_[1]) rounds_[0] = rounds_[1] / 2;
-    key_text_ = fmt::format("halfslope reference 1\n{}\n{}\nrounds {} {}\npixels", isa_class(active_isa()),
+    if (const auto legal = samplers.make("halton-owen")->illegal(rounds_[1], allocation_.layout(source.techniques()))) {
+      fail(ExitCode::kBadInput, "scene '{}': a reference takes at most N = {} samples a replicate, asked for {}", name,
+           legal->below.value_or(0) * round, rounds_[1] * round);
+    }
+    key_text_ = fmt::format("halfslope {} reference\n{}\n{}\nrounds {} {}\npixels", version(), isa_class(active_isa()),
                             source.fingerprint(), rounds_[0], rounds_[1]);
     for (const int pixel : pixels) key_text_ += fmt::format(" {}", pixel);
   }
@@ -182,7 +186,7 @@ std::filesystem::path Renderer::file(std::int64_t replicates) const {
 }
 
 bool Renderer::load(State& state, std::int64_t replicates) const {
-  if (options_.cache.empty() || !std::filesystem::exists(file(replicates))) return false;
+  if (options_.cache.empty()) return false;
   try {
     const std::string text = read_file(file(replicates));
     std::span<const std::byte> cursor = std::as_bytes(std::span(text));
@@ -192,9 +196,11 @@ bool Renderer::load(State& state, std::int64_t replicates) const {
     const auto found = take_bytes<char>(cursor, std::min(cursor.size(), key.size()));
     if (!std::equal(found.begin(), found.end(), key.begin(), key.end())) return false;
     const std::size_t integrals = pixels_.size() * static_cast<std::size_t>(source_.channels());
-    state.full = take_bytes<Moments>(cursor, integrals);
-    state.compared = take_bytes<Moments>(cursor, integrals);
-    state.replicate_sums = take_bytes<double>(cursor, static_cast<std::size_t>(replicates));
+    State found_state;
+    found_state.full = take_bytes<Moments>(cursor, integrals);
+    found_state.compared = take_bytes<Moments>(cursor, integrals);
+    found_state.replicate_sums = take_bytes<double>(cursor, static_cast<std::size_t>(replicates));
+    state = std::move(found_state);
     return true;
   } catch (const Error&) {
     return false;  // a damaged or unreadable cache is no cache: render again
@@ -238,6 +244,13 @@ Reference closed_form_reference(const IntegralSource& source, const std::vector<
 
 }  // namespace
 
+std::optional<std::size_t> Reference::first_nonfinite(int channels) const {
+  for (std::size_t i = 0; i < value.size(); ++i) {
+    if (!std::isfinite(value[i]) || !std::isfinite(variance[i])) return i / static_cast<std::size_t>(channels);
+  }
+  return std::nullopt;
+}
+
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers) {
   if (source.closed_form(pixels.front())) return closed_form_reference(source, pixels);
@@ -248,19 +261,24 @@ Reference make_reference(const IntegralSource& source, const std::string& name, 
   for (;; replicates *= 2) {
     renderer.extend(state, replicates);
     const double own = mean_variance(state.full) / static_cast<double>(replicates);
+    if (!std::isfinite(own)) break;  // more replicates would not mend it; the cells will be invalid
     const double expected = mean_variance(state.compared);
     share = expected > 0 ? own / expected : 0;
     relative = relative_error(state.full);
     if ((goal.error_share == 0 || share <= goal.error_share) &&
         (goal.relative_error == 0 || relative <= goal.relative_error))
       break;
-    if (2 * replicates > goal.most_replicates) {
-      fail(ExitCode::kBadInput,
-           "scene '{}': {} replicates of N = {} leave the reference with {} times the variance that its errors allow, "
-           "and "
-           "a relative error of {}; ask for fewer samples, or give `halfslope reference` more of them",
-           name, replicates, renderer.samples(), goal.error_share > 0 ? share / goal.error_share : share, relative);
+    if (2 * replicates <= goal.most_replicates) continue;
+    const std::string spent =
+        fmt::format("scene '{}': after {} replicates of N = {} the reference's", name, replicates, renderer.samples());
+    if (goal.error_share > 0 && share > goal.error_share) {
+      fail(ExitCode::kBadInput, "{} variance is still {:.3g} times what errors at N = {} allow; measure at smaller N",
+           spent, share / goal.error_share, goal.compare_samples);
     }
+    fail(ExitCode::kBadInput,
+         "{} relative error is still {:.3g}, and {:.3g} was asked for; give it more --samples or --max-replicates, or "
+         "ask for a larger --relative-error",
+         spent, relative, goal.relative_error);
   }
   Reference reference;
   reference.samples = renderer.samples();

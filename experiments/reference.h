@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,9 @@ struct Reference {
   std::string origin;        ///< "closed form", or how it was rendered
   std::uint64_t samples = 0;
   std::int64_t replicates = 0;
+
+  /// The position of the first pixel whose value or variance is not finite.
+  std::optional<std::size_t> first_nonfinite(int channels) const;
 };
 
 /// When a rendered reference is good enough.

@@ -7,7 +7,9 @@
 #include <map>
 
 #include "analysis/intervals.h"
+#include "core/error.h"
 #include "core/random.h"
+#include "experiments/interrupt.h"
 
 namespace halfslope {
 namespace {
@@ -84,19 +86,19 @@ RegionResult join(const std::string& name, const FoldedCell& folded, const std::
 }
 
 std::vector<RegionResult> region_results(const PlannedScene& scene, const FoldedCell& folded,
+                                         const CellStatistics& whole,
                                          const std::map<std::uint32_t, ReferenceShare>& shares) {
   std::vector<RegionResult> results;
   if (folded.regions.empty() || folded.regions.begin()->second.mse.empty()) return results;
   const auto names = scene.source->regions();
-  std::vector<std::uint32_t> all;
   std::vector<std::pair<std::string, std::vector<std::uint32_t>>> shapes;  // in the scene's order
   for (const auto& [leaf, errors] : folded.regions) {
-    all.push_back(leaf);
     const std::string shape = names[leaf].substr(0, names[leaf].find('/'));
     if (shapes.empty() || shapes.back().first != shape) shapes.emplace_back(shape, std::vector<std::uint32_t>());
     shapes.back().second.push_back(leaf);
   }
-  results.push_back(join("all", folded, all, shares));
+  results.push_back({"all", static_cast<std::int64_t>(scene.pixels.size()), whole.rmse, whole.rmse_lo, whole.rmse_hi,
+                     whole.relmse, whole.relmse_lo, whole.relmse_hi});
   for (const auto& [shape, leaves] : shapes) {
     results.push_back(join(shape, folded, leaves, shares));
     if (leaves.size() == 1 && names[leaves[0]] == shape) continue;
@@ -105,29 +107,29 @@ std::vector<RegionResult> region_results(const PlannedScene& scene, const Folded
   return results;
 }
 
-RateResult fit_line(const Plan& plan, const Results& results, std::span<const Reference> references, std::size_t begin,
-                    std::size_t end, const SamplerCatalogue& samplers) {
+RateResult fit_line(const Plan& plan, std::span<const Reference> references, std::size_t begin,
+                    const std::vector<FoldedCell>& line, const SamplerCatalogue& samplers) {
   const Cell& first = plan.cells[begin];
-  std::vector<double> samples, reference_mse;
-  std::vector<std::vector<double>> mse;
-  bool kept = true;
-  for (std::size_t c = begin; c < end; ++c) {
-    const CellResult& cell = results.cells[c];
-    samples.push_back(static_cast<double>(plan.cells[c].samples));
-    reference_mse.push_back(references[first.scene].mean_variance);
-    auto& column = mse.emplace_back();
-    kept = !cell.per_replicate.empty();
-    for (const ReplicateErrors& errors : cell.per_replicate) column.push_back(errors.mse);
-    if (!kept) column.push_back(cell.mse);
+  const Reference& reference = references[first.scene];
+  std::vector<double> samples;
+  const std::vector<double> reference_mse(line.size(), reference.mean_variance);
+  std::vector<std::vector<double>> mse(line.size());
+  const bool kept = !line.front().data.per_replicate.empty();
+  for (std::size_t j = 0; j < line.size(); ++j) {
+    samples.push_back(static_cast<double>(plan.cells[begin + j].samples));
+    for (const ReplicateErrors& errors : line[j].data.per_replicate) mse[j].push_back(errors.mse);
+    if (!kept) mse[j].push_back(line[j].data.mse.mean);
   }
   const double unit = first.precision == Precision::kF32 ? 0x1p-24 : 0x1p-53;
-  const double rounding = unit * std::fabs(references[first.scene].mean);
+  const double rounding = unit * std::fabs(reference.mean);
   RateResult rate;
   rate.first_cell = begin;
   const std::string name = cell_name(plan, first);
   rate.fit = fit_rate(samples, mse, reference_mse, hash_text(name.substr(0, name.rfind(',')), 1), rounding * rounding);
-  if (!kept && rate.fit.status == "deterministic")
-    rate.fit.status = "many-replicates";  // no interval: they are not kept
+  if (const auto mark = rate.fit.status.find("deterministic"); !kept && mark != std::string::npos) {
+    // One number at each N not because there was one replicate: they are not kept, so there is no interval.
+    rate.fit.status.replace(mark, std::string("deterministic").size(), "many-replicates");
+  }
   for (const SamplerInfo& info : samplers.list()) {
     if (info.name == first.sampler) rate.theory = info.rate;
   }
@@ -137,38 +139,44 @@ RateResult fit_line(const Plan& plan, const Results& results, std::span<const Re
 }  // namespace
 
 Results collect_results(const Plan& plan, std::span<const Reference> references, const Journal& journal,
-                        const SamplerCatalogue& samplers, int threads,
-                        const std::function<void(std::size_t, const FoldedCell&)>& visit) {
+                        const SamplerCatalogue& samplers, int threads, const CellVisitor& visitor) {
   Results results;
   results.cells.resize(plan.cells.size());
   std::vector<std::map<std::uint32_t, ReferenceShare>> shares;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s)
     shares.push_back(reference_shares(plan.scenes[s], references[s]));
   tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-  arena.execute([&] {
-    tbb::parallel_for(
-        std::size_t{0}, plan.cells.size(),
-        [&](std::size_t c) {
-          const Cell& cell = plan.cells[c];
-          FoldedCell folded = fold_cell(plan, cell, references[cell.scene], journal);
-          visit(c, folded);
-          CellResult& result = results.cells[c];
-          result.statistics = summarise(folded.data);
-          result.mse = folded.data.mse.mean;
-          result.regions = region_results(plan.scenes[cell.scene], folded, shares[cell.scene]);
-          result.per_replicate = std::move(folded.data.per_replicate);
-          result.first_bad_replicate = folded.first_bad_replicate;
-          result.first_bad_pixel = folded.first_bad_pixel;
-        },
-        tbb::simple_partitioner());
-  });
   const auto same_line = [&](std::size_t a, std::size_t b) {
     const Cell &x = plan.cells[a], &y = plan.cells[b];
     return x.scene == y.scene && x.estimator == y.estimator && x.sampler == y.sampler && x.precision == y.precision;
   };
+  // A line of convergence at a time: its replicates are needed together for the rate, and then no more.
   for (std::size_t begin = 0, end = 0; begin < plan.cells.size(); begin = end) {
+    if (interrupted()) {
+      fail(ExitCode::kInterrupted,
+           "interrupted while the tables were made; all units are done: run the same command again to go on");
+    }
     while (end < plan.cells.size() && same_line(begin, end)) ++end;
-    results.rates.push_back(fit_line(plan, results, references, begin, end, samplers));
+    std::vector<FoldedCell> line(end - begin);
+    arena.execute([&] {
+      tbb::parallel_for(
+          begin, end,
+          [&](std::size_t c) {
+            const Cell& cell = plan.cells[c];
+            FoldedCell& folded = line[c - begin] = fold_cell(plan, cell, references[cell.scene], journal);
+            visitor.as_folded(cell, folded);
+            folded.integrals = {};
+            CellResult& result = results.cells[c];
+            result.statistics = summarise(folded.data);
+            result.regions = region_results(plan.scenes[cell.scene], folded, result.statistics, shares[cell.scene]);
+            folded.regions = {};
+            result.first_bad_replicate = folded.first_bad_replicate;
+            result.first_bad_pixel = folded.first_bad_pixel;
+          },
+          tbb::simple_partitioner());
+    });
+    for (std::size_t c = begin; c < end; ++c) visitor.in_order(plan.cells[c], line[c - begin]);
+    results.rates.push_back(fit_line(plan, references, begin, line, samplers));
   }
   return results;
 }

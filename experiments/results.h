@@ -1,7 +1,9 @@
 // The numbers of a finished run, cell by cell.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,9 +24,7 @@ struct RegionResult {
 
 struct CellResult {
   CellStatistics statistics;
-  std::vector<ReplicateErrors> per_replicate;  ///< up to 4096
-  double mse = 0;                              ///< mean over replicates
-  std::vector<RegionResult> regions;           ///< where the scene has several
+  std::vector<RegionResult> regions;  ///< where the scene has several
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;
 };
 
@@ -40,9 +40,17 @@ struct Results {
   std::vector<RateResult> rates;
 };
 
-/// Calls `visit` with each folded cell as it is done (from several threads, each cell once), then keeps its statistics.
+/// What is done with a folded cell beside keeping its statistics: its memory is given back at once, so that a run's
+/// does not grow with replicates or pixels.
+struct CellVisitor {
+  /// From several threads, each cell once: images.
+  std::function<void(const Cell& cell, const FoldedCell& folded)> as_folded;
+  /// From one thread, in the plan's order: rows of replicates.
+  std::function<void(const Cell& cell, const FoldedCell& folded)> in_order;
+};
+
+/// Throws Error(kInterrupted) if a signal comes meanwhile.
 Results collect_results(const Plan& plan, std::span<const Reference> references, const Journal& journal,
-                        const SamplerCatalogue& samplers, int threads,
-                        const std::function<void(std::size_t cell, const FoldedCell& folded)>& visit);
+                        const SamplerCatalogue& samplers, int threads, const CellVisitor& visitor);
 
 }  // namespace halfslope

@@ -12,12 +12,16 @@ namespace halfslope {
 /// process, however that ends, so a lock never outlives a run.
 class RunFolder {
  public:
-  /// Makes the folder and its parents. Error(kIo) if it cannot be made or written to, or, at once and with nothing
-  /// changed, if another run is at work in it.
+  /// Makes the folder and its parents, and clears away the unfinished files of a killed run. Error(kIo) if it cannot be
+  /// made or written to, or, at once and with nothing changed, if another run is at work in it.
   explicit RunFolder(const std::filesystem::path& folder);
 
   const std::filesystem::path& path() const { return folder_; }
   std::filesystem::path path(std::string_view name) const { return folder_ / name; }
+
+  /// Removes the tables and pictures of an earlier run, which would pass for the next one's. Nothing else is touched,
+  /// and nothing at all where there is no journal.
+  void remove_results() const;
 
  private:
   std::filesystem::path folder_;

@@ -12,6 +12,12 @@ std::string between(const std::optional<double>& lo, const std::optional<double>
   return lo || hi ? fmt::format("[{}, {}]", short_number(lo), short_number(hi)) : "";
 }
 
+// "1 pixel", "64 replicates".
+template <class Count>
+std::string counted(Count count, const char* thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 // Columns as wide as their widest cell; the first `left` of them flush left.
 std::string align(const std::vector<std::vector<std::string>>& rows, std::size_t left) {
   std::vector<std::size_t> widths;
@@ -84,6 +90,8 @@ std::string main_table(const Plan& plan, const Results& results, const Slice& sl
         slope = fmt::format("{:.2f}", *rate->fit.rate);
         if (rate->fit.interval)
           slope_interval = fmt::format("[{:.2f}, {:.2f}]", rate->fit.interval->lo, rate->fit.interval->hi);
+      } else if (rate != results.rates.end() && rate->fit.samples_hi > 0) {
+        slope_interval = rate->fit.status;  // why there is none; the row's own status speaks of this N alone
       }
       rows.push_back({sampler, plan.scenes[cell.scene].estimators[cell.estimator].name, short_number(s.rmse),
                       between(s.rmse_lo, s.rmse_hi), short_number(s.relmse), between(s.relmse_lo, s.relmse_hi), slope,
@@ -159,18 +167,20 @@ std::string summary(const Plan& plan, const Results& results) {
   for (const Slice& slice : largest_slices(plan)) {
     const PlannedScene& scene = plan.scenes[slice.scene];
     const Pass& pass = plan.passes[plan.cells[slice.cells.front()].pass];
-    text += fmt::format("{}{}, {}, N = {} samples, {} pixels, {} replicates\n\n", text.empty() ? "" : "\n", scene.name,
-                        to_string(slice.precision), slice.samples, scene.pixels.size(), pass.replicates);
+    text +=
+        fmt::format("{}{}, {}, N = {}, {}, {}\n\n", text.empty() ? "" : "\n", scene.name, to_string(slice.precision),
+                    slice.samples, counted(scene.pixels.size(), "pixel"), counted(pass.replicates, "replicate"));
     text += main_table(plan, results, slice);
     const std::string& sampler = plan.cells[slice.cells.front()].sampler;
     if (results.cells[slice.cells.front()].regions.empty()) continue;
-    text += fmt::format("\nRMSE by what a pixel sees ({}):\n\n", sampler) + shape_table(plan, results, slice, sampler);
+    text += fmt::format("\nRMSE over the pixels that see each shape, with {} points:\n\n", sampler) +
+            shape_table(plan, results, slice, sampler);
     if (const std::string duel = duel_table(plan, results, slice, sampler); !duel.empty()) {
-      text +=
-          fmt::format(
-              "\nrmse(light) / rmse(bsdf) where a shape mirrors a light ({}); below 1 the light technique wins:\n\n",
-              sampler) +
-          duel;
+      text += fmt::format(
+                  "\nrmse(light) / rmse(bsdf) where a shape mirrors a light, with {} points; below 1 the light "
+                  "technique wins:\n\n",
+                  sampler) +
+              duel;
     }
   }
   return text;

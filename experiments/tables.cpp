@@ -1,5 +1,7 @@
 #include "experiments/tables.h"
 
+#include <cmath>
+
 #include "core/csv.h"
 
 namespace halfslope {
@@ -10,6 +12,8 @@ void key_cells(CsvWriter& csv, const Plan& plan, const Cell& cell) {
   const PlannedScene& scene = plan.scenes[cell.scene];
   csv.cell(scene.name).cell(scene.estimators[cell.estimator].name).cell(cell.sampler).cell(to_string(cell.precision));
 }
+
+std::optional<double> if_finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
 
 }  // namespace
 
@@ -23,25 +27,24 @@ std::string convergence_csv(const Plan& plan, const Results& results) {
     const CellStatistics& s = results.cells[c].statistics;
     key_cells(csv, plan, cell);
     csv.cell(cell.samples).cell(plan.passes[cell.pass].replicates).cell(plan.scenes[cell.scene].pixels.size());
-    csv.cell(s.mean).cell(s.reference).cell(s.reference_se).cell(s.reference_mse).cell(s.bias).cell(s.bias_se);
+    csv.cell(s.mean).cell(if_finite(s.reference)).cell(if_finite(s.reference_se)).cell(if_finite(s.reference_mse));
+    csv.cell(s.bias).cell(s.bias_se);
     csv.cell(s.variance).cell(s.rmse).cell(s.rmse_lo).cell(s.rmse_hi).cell(s.mae).cell(s.relmse).cell(s.kurtosis);
     csv.cell(s.median_abs_error).cell(s.nonfinite).cell(s.status).end_row();
   }
   return csv.text();
 }
 
-std::string replicates_csv(const Plan& plan, const Results& results) {
-  CsvWriter csv(
-      {"scene", "estimator", "sampler", "precision", "samples", "replicate", "mean", "mse", "mae", "max_abs_error"});
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    const auto& replicates = results.cells[c].per_replicate;
-    for (std::size_t r = 0; r < replicates.size(); ++r) {
-      key_cells(csv, plan, plan.cells[c]);
-      csv.cell(plan.cells[c].samples).cell(r).cell(replicates[r].mean).cell(replicates[r].mse).cell(replicates[r].mae);
-      csv.cell(replicates[r].max_abs_error).end_row();
-    }
+ReplicatesTable::ReplicatesTable()
+    : csv_({"scene", "estimator", "sampler", "precision", "samples", "replicate", "mean", "mse", "mae",
+            "max_abs_error"}) {}
+
+void ReplicatesTable::add(const Plan& plan, const Cell& cell, const std::vector<ReplicateErrors>& replicates) {
+  for (std::size_t r = 0; r < replicates.size(); ++r) {
+    key_cells(csv_, plan, cell);
+    csv_.cell(cell.samples).cell(r).cell(replicates[r].mean).cell(replicates[r].mse).cell(replicates[r].mae);
+    csv_.cell(replicates[r].max_abs_error).end_row();
   }
-  return csv.text();
 }
 
 std::string rates_csv(const Plan& plan, const Results& results) {
@@ -52,7 +55,10 @@ std::string rates_csv(const Plan& plan, const Results& results) {
     csv.cell(rate.fit.rate);
     csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->lo) : std::nullopt);
     csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->hi) : std::nullopt);
-    csv.cell(rate.fit.samples_lo).cell(rate.fit.samples_hi).cell(rate.theory).cell(rate.fit.status).end_row();
+    const bool window = rate.fit.samples_hi > 0;
+    csv.cell(window ? std::optional(rate.fit.samples_lo) : std::nullopt);
+    csv.cell(window ? std::optional(rate.fit.samples_hi) : std::nullopt);
+    csv.cell(rate.theory).cell(rate.fit.status).end_row();
   }
   return csv.text();
 }

@@ -2,14 +2,26 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "core/csv.h"
 #include "experiments/plan.h"
 #include "experiments/results.h"
 
 namespace halfslope {
 
 std::string convergence_csv(const Plan& plan, const Results& results);
-std::string replicates_csv(const Plan& plan, const Results& results);
+/// replicates.csv, cell by cell.
+class ReplicatesTable {
+ public:
+  ReplicatesTable();
+  void add(const Plan& plan, const Cell& cell, const std::vector<ReplicateErrors>& replicates);
+  /// The text since the last call, the header first.
+  std::string take_text() { return csv_.take_text(); }
+
+ private:
+  CsvWriter csv_;
+};
 std::string rates_csv(const Plan& plan, const Results& results);
 /// Empty where no scene has parts.
 std::string regions_csv(const Plan& plan, const Results& results);

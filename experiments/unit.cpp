@@ -176,8 +176,9 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
             squared[r].relative += error * error * scale;
             part.abs_error.add(magnitude);
             if (!std::isfinite(values[r])) {
-              if (part.nonfinite++ == 0) {
-                part.first_bad_replicate = static_cast<std::uint64_t>(unit.first_replicate) + first + r;
+              const auto replicate = static_cast<std::uint64_t>(unit.first_replicate) + first + r;
+              if (part.nonfinite++ == 0 || replicate < part.first_bad_replicate) {
+                part.first_bad_replicate = replicate;
                 part.first_bad_pixel = static_cast<std::uint64_t>(pixel);
               }
             }
@@ -190,11 +191,8 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
     for (std::size_t cell = 0; cell < cells; ++cell) {
       for (std::size_t c = 0; c < channels; ++c) {
         const Moments& m = moments[cell * channels + c];
-        if (wants_integrals[cell]) {
-          parts[cell].integrals.push_back(m);
-        } else {
-          parts[cell].spread.add(m);
-        }
+        if (wants_integrals[cell]) parts[cell].integrals.push_back(m);
+        if (pass.batches() == 1) parts[cell].spread.add(m);
       }
     }
   }

@@ -34,10 +34,10 @@ struct CellPart {
   std::vector<std::uint32_t> regions;     ///< that the tile touches
   std::vector<SquaredErrors> squared;     ///< [region][replicate]
   std::vector<Moments> integrals;         ///< each integral's; kept where other units or an image need them
-  SpreadSums spread;                      ///< of the integrals, where they are not kept
+  SpreadSums spread;                      ///< of the integrals, where no other unit has replicates of them
   LogHistogram abs_error;
   std::uint64_t nonfinite = 0;
-  std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;  ///< of the first non-finite estimate
+  std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;  ///< the first replicate with one, its first pixel
 
   void append_to(std::vector<std::byte>& bytes) const;
   static CellPart read(std::span<const std::byte> bytes);

@@ -52,6 +52,7 @@ class HaltonOwen final : public Sampler {
 
   void prepare(const PointRequest& request) override {
     words_.prepare(request);
+    if (!kernels_) kernels_ = &kernels<SamplerKernels>();
     dims_.resize(static_cast<std::size_t>(request.layout->dims()));
     for (std::size_t d = 0; d < dims_.size(); ++d) {
       Dim& dim = dims_[d];
@@ -60,7 +61,8 @@ class HaltonOwen final : public Sampler {
       std::uint32_t size = 1, digits = 0;
       while (size < request.count && size * base <= kTableSize) size *= base, ++digits;
       dim.table.resize(std::size_t{size} * kLanes);
-      kernels_->halton_owen_table(base, dim.keys.data(), size, dim.table.data());
+      const auto tabled = static_cast<std::uint32_t>(std::min<std::uint64_t>(size, request.count));
+      kernels_->halton_owen_table(base, dim.keys.data(), tabled, dim.table.data());
       dim.kernel = {base, digits, dim.table.data(), dim.keys.data()};
     }
   }
@@ -79,7 +81,7 @@ class HaltonOwen final : public Sampler {
     HaltonDim kernel;
   };
   WordSource words_;
-  const SamplerKernels* kernels_ = &kernels<SamplerKernels>();
+  const SamplerKernels* kernels_ = nullptr;
   std::vector<Dim> dims_;
 };
 

@@ -59,11 +59,9 @@ inline void step(std::uint32_t base, const Level& level, std::uint32_t k, std::u
   const double b = base, inverse_b = 1.0 / base;
   const std::uint32_t node = parent * 0x9e3779b1u + k * 0x85ebca77u;
   for (int l = 0; l < kLanes; ++l) {
-    // The first k+1 digits of the parent, exactly: the product may round up to the next integer.
-    const double product = from[l] * level.width;
-    auto digits = static_cast<std::int32_t>(product);
-    const double back = digits * level.inverse;
-    digits -= back > from[l] ? 1 : 0;
+    // The parent stands clear of all interval ends up to b^{k+1} = 2¹⁸ (see Level), so the product's rounding cannot
+    // change its digits; beyond, one point in 2⁵³ / b^{k+1} lies so near an end that it may take its neighbour's digit.
+    const auto digits = static_cast<std::int32_t>(from[l] * level.width);
     const auto above = static_cast<std::int32_t>((digits + 0.5) * inverse_b);
     const std::int32_t g = digits - above * static_cast<std::int32_t>(base);
     const std::uint32_t h =

@@ -13,6 +13,8 @@ inline constexpr int kMaxWordDims = 1 << 28;
 class WordSource {
  public:
   void prepare(const PointRequest& request) {
+    // Not before: a catalogue of samplers must not need kernels.
+    if (!kernels_) kernels_ = &kernels<SamplerKernels>();
     stream_ = {request.key.word0, request.key.word1, request.pixel, request.replicate};
   }
   /// count × kLanes words of dimension `dim` from index `begin`; `out` lanes fastest.
@@ -28,7 +30,7 @@ class WordSource {
 
  private:
   WordStream stream_ = {};
-  const SamplerKernels* kernels_ = &kernels<SamplerKernels>();
+  const SamplerKernels* kernels_ = nullptr;
 };
 
 }  // namespace halfslope

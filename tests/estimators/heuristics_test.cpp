@@ -113,13 +113,18 @@ TYPED_TEST(Weights, NotANumberIsNeverSwallowed) {
     for (const Way<T>& way : every_way<T>()) {
       for (const Heuristic& heuristic : every_heuristic()) {
         if (heuristic.kind == HeuristicKind::kAverage) continue;  // asks no density
-        for (std::size_t k = 0; k < 3; ++k) {
-          Table<T> densities(3, std::vector<T>(kLanes, T(2)));
-          densities[k].assign(kLanes, bad);
-          const Table<T> weights = way.weights(heuristic, densities);
-          T sum = 0;
-          for (const auto& row : weights) sum += row[0];
-          ASSERT_TRUE(std::isnan(sum)) << way.name << ' ' << name(heuristic) << ' ' << bad << " of technique " << k;
+        for (const std::size_t n : {2u, 3u}) {
+          for (std::size_t k = 0; k < n; ++k) {
+            Table<T> densities(n, std::vector<T>(kLanes, T(2)));
+            densities[k].assign(kLanes, bad);
+            const Table<T> weights = way.weights(heuristic, densities);
+            T sum = 0;
+            for (const auto& row : weights) sum += row[0];
+            // An infinite density may have its limit, all of the weight.
+            const bool limit = std::isinf(bad) && weights[k][0] == T(1) && sum == T(1);
+            ASSERT_TRUE(std::isnan(sum) || limit)
+                << way.name << ' ' << name(heuristic) << ' ' << bad << " of technique " << k << " of " << n;
+          }
         }
       }
     }
@@ -186,7 +191,7 @@ TYPED_TEST(Weights, FoldIsTheMultiSampleEstimator) {
     for (T& density : scaled[k]) density *= counts[k];
   }
   std::vector<Heuristic> heuristics = every_heuristic();
-  while (heuristics.size() < static_cast<std::size_t>(kMostHeuristics)) heuristics.push_back(power(2));
+  while (heuristics.size() < 20) heuristics.push_back(power(2));
   for (const Isa isa : supported_isas()) {
     const std::vector<T> found = folded<T>(isa, heuristics, densities, slots, values, counts);
     for (std::size_t h = 0; h < heuristics.size(); ++h) {

@@ -32,7 +32,12 @@ class ReferenceTracer {
  public:
   /// `tolerance` is relative to lengths of about 1.
   ReferenceTracer(const Scene& scene, const Hit& seen, const Vec3& to_eye, double tolerance)
-      : scene_(scene), x_(seen.position), n_(seen.normal), wo_(to_eye), tolerance_(tolerance) {
+      : scene_(scene),
+        receiver_(seen.primitive),
+        x_(seen.position),
+        n_(seen.normal),
+        wo_(to_eye),
+        tolerance_(tolerance) {
     bsdf_ = scene.primitives[static_cast<std::size_t>(seen.primitive)].bsdf;
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
       if (scene.primitives[i].emits) lights_.push_back(static_cast<int>(i));
@@ -52,6 +57,7 @@ class ReferenceTracer {
       normal = s->flip_normals ? Vec3(-outward) : outward;
     } else {
       const auto& r = std::get<Rectangle>(light.shape);
+      if (term.light == receiver_) return term;  // lies in its own plane
       term.point = r.center + (2 * u1 - 1) * r.half_u + (2 * u2 - 1) * r.half_v;
       normal = r.normal;
     }
@@ -61,13 +67,15 @@ class ReferenceTracer {
                    (term.point - x_).norm() < 1e3 * tolerance_;
     term.faces = cos_theta > 0 && cos_psi > 0;
     if (!term.faces || term.grazing) return term;
-    const auto visible = [&](const Vec3& from_nudge, const Vec3& to_nudge) {
-      const Vec3 from = x_ + tolerance_ * n_ + from_nudge, direction = term.point + to_nudge - from;
-      const Hit hit = first_hit(scene_, {from, direction.normalized()});
+    const auto visible = [&](const Vec3& from, const Vec3& to) {
+      const Hit hit = first_hit(scene_, {from, (to - from).normalized()});
       return hit.primitive == term.light && hit.front;
     };
-    const bool seen = visible(Vec3::Zero(), Vec3::Zero());
-    for (int i = 0; i < 4; ++i) term.grazing = term.grazing || visible(nudge(), nudge()) != seen;
+    const bool seen = visible(x_ + tolerance_ * wi, term.point);
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 from = x_ + tolerance_ * n_ + nudge(), to = term.point + nudge();
+      term.grazing = term.grazing || visible(from, to) != seen;
+    }
     if (!seen) return term;
     fill(term, light, wi, (term.point - x_).squaredNorm(), cos_psi);
     term.value *= 1 / term.pdf_light;
@@ -79,18 +87,20 @@ class ReferenceTracer {
     ExpectedTerm term;
     term.grazing = std::abs(n_.dot(wi)) < 100 * tolerance_;
     if (n_.dot(wi) <= 0 || term.grazing) return term;
-    const auto seen = [&](const Vec3& from_nudge, const Vec3& direction_nudge) {
-      Hit hit = first_hit(scene_, {x_ + tolerance_ * n_ + from_nudge, (wi + direction_nudge).normalized()});
+    const auto seen = [&](const Vec3& from, const Vec3& direction) {
+      Hit hit = first_hit(scene_, {from, direction.normalized()});
       if (hit.primitive >= 0 && !(hit.front && scene_.primitives[static_cast<std::size_t>(hit.primitive)].emits)) {
         hit.primitive = -1;
       }
       return hit;
     };
-    const Hit hit = seen(Vec3::Zero(), Vec3::Zero());
-    for (int i = 0; i < 4; ++i) term.grazing = term.grazing || seen(nudge(), nudge()).primitive != hit.primitive;
+    const Hit hit = seen(x_ + tolerance_ * wi, wi);  // on the ray itself, off the surface
+    for (int i = 0; i < 4; ++i) {
+      const Vec3 from = x_ + tolerance_ * n_ + nudge(), direction = wi + nudge();
+      term.grazing = term.grazing || seen(from, direction).primitive != hit.primitive;
+    }
     if (hit.primitive < 0) return term;
-    // From the receiver itself, not from where visibility was asked.
-    const double distance = hit.distance + tolerance_ * n_.dot(wi), cos_psi = -hit.normal.dot(wi);
+    const double distance = hit.distance + tolerance_, cos_psi = -hit.normal.dot(wi);
     term.grazing = term.grazing || cos_psi < 100 * tolerance_ || distance < 1e3 * tolerance_;
     fill(term, scene_.primitives[static_cast<std::size_t>(hit.primitive)], wi, distance * distance, cos_psi);
     term.value *= 1 / term.pdf_bsdf;
@@ -146,6 +156,7 @@ class ReferenceTracer {
   }
 
   const Scene& scene_;
+  int receiver_;
   Vec3 x_, n_, wo_;
   double tolerance_;
   Bsdf bsdf_;

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "estimators/direct_lighting.h"
@@ -67,6 +68,28 @@ inline Bsdf conductor(double alpha, const Rgb& eta, const Rgb& k) {
   bsdf.k = k;
   return bsdf;
 }
+
+/// The same scene elsewhere: turned about the origin, made larger by `scale`, then moved. Radiances do not change.
+inline Scene moved(Scene scene, const Eigen::Matrix3d& turn, double scale, const Vec3& by) {
+  const auto point = [&](Vec3& p) { p = scale * (turn * p) + by; };
+  const auto direction = [&](Vec3& d) { d = turn * d; };
+  for (Primitive& primitive : scene.primitives) {
+    if (auto* s = std::get_if<Sphere>(&primitive.shape)) {
+      point(s->center);
+      s->radius *= scale;
+    } else {
+      auto& r = std::get<Rectangle>(primitive.shape);
+      point(r.center), direction(r.normal);
+      r.half_u = scale * (turn * r.half_u);
+      r.half_v = scale * (turn * r.half_v);
+    }
+  }
+  for (Ray& ray : scene.sensor.rays) point(ray.origin), direction(ray.direction);
+  return scene;
+}
+
+/// Some turn that leaves no axis alone.
+inline Eigen::Matrix3d some_turn() { return Eigen::AngleAxisd(1.1, Vec3(2, -3, 4).normalized()).toRotationMatrix(); }
 
 /// The ray from an eye through a point.
 inline Ray looking(const Vec3& eye, const Vec3& at) { return {eye, (at - eye).normalized()}; }
