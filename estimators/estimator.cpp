@@ -119,7 +119,7 @@ std::vector<EstimatorInfo> estimator_catalogue() {
       {"light", "surface form: a light chosen uniformly, then a point uniform on its area",
        "Veach (1997), section 8.2.2"},
       {"bsdf", "directional form: the BSDF's own density (visible normals for GGX)",
-       "Veach (1997), section 8.2.2; Heitz (2018)"},
+       "Veach (1997), section 8.2.2; Dupuy & Benyoub (2023)"},
       {"average", "the plain average of the techniques' estimators, w = 1/n", "Veach & Guibas (1995)"},
       {"balance", "balance heuristic, w_i = c_i p_i / sum c_k p_k", "Veach & Guibas (1995); Veach (1997), eq. 9.8"},
       {"power[:B]", "power heuristic with exponent B (default 2)", "Veach & Guibas (1995); Veach (1997), eq. 9.9"},

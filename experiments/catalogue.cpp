@@ -59,8 +59,8 @@ std::unique_ptr<IntegralSource> Catalogue::make_scene(const std::string& name, c
     names.push_back(entry.info.name);
   }
   fail(ExitCode::kBadInput,
-       "there is no scene '{}'{}; `halfslope list scenes` names them all, and a path that ends in .xml is read as a "
-       "Mitsuba 3 scene",
+       "there is no scene '{}'{} (`halfslope list scenes` names them all; a path that ends in .xml is a Mitsuba 3 "
+       "scene)",
        head, did_you_mean(head, names));
 }
 

@@ -93,7 +93,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes and statuses");
   list_app->add_option("what", list.what, "samplers, estimators, scenes or statuses");
   list_app->add_flag("--json", list.json, "as JSON");
-  list_app->add_flag("--names", names_only, "names of samplers or scenes alone, a line each");
+  list_app->add_flag("--names", names_only, "names alone, a line each");
 
   PointsArguments points;
   CLI::App* points_app = app.add_subcommand("points", "print a sampler's points as CSV");
@@ -108,8 +108,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   RenderArguments render;
   CLI::App* render_app = app.add_subcommand("render", "render one replicate to an EXR image");
   render_app->add_option("--scene", render.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
-  render_app->add_option("--estimator", render.estimator, "see `halfslope list estimators`")
-      ->capture_default_str()
+  render_app->add_option("--estimator", render.estimator, "see `halfslope list estimators` (default: balance, or mean)")
       ->type_name("NAME");
   render_app->add_option("--sampler", render.sampler, "see `halfslope list samplers`")
       ->capture_default_str()
@@ -165,13 +164,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   }
   if (run_app->parsed()) return run_command(run, catalogue);
   if (list_app->parsed()) {
-    if (!names_only) return list_command(list, catalogue);
-    if (list.what == "scenes") {
-      for (const SceneInfo& scene : catalogue.scenes()) fmt::print("{}\n", scene.name);
-    } else {
-      for (const auto& name : catalogue.samplers.names()) fmt::print("{}\n", name);
-    }
-    return 0;
+    list.names_only = names_only;
+    return list_command(list, catalogue);
   }
   if (points_app->parsed()) return points_command(points, catalogue);
   if (render_app->parsed()) return render_command(render, catalogue);

@@ -23,7 +23,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue);
 
 struct ListArguments {
   std::string what;  ///< samplers, estimators, scenes, statuses, or empty for all
-  bool json = false;
+  bool json = false, names_only = false;
 };
 int list_command(const ListArguments& arguments, const Catalogue& catalogue);
 
@@ -37,7 +37,7 @@ struct PointsArguments {
 int points_command(const PointsArguments& arguments, const Catalogue& catalogue);
 
 struct RenderArguments {
-  std::string scene, estimator = "balance", sampler = "halton-owen", resolution, precision = "f32", out;
+  std::string scene, estimator, sampler = "halton-owen", resolution, precision = "f32", out;
   std::uint64_t samples = 64, seed = 1;
   std::uint32_t replicate = 0;
   int threads = 0;

@@ -1,7 +1,6 @@
 // points, render and reference.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <atomic>
 #include <cstdio>
@@ -16,6 +15,7 @@
 #include "experiments/commands.h"
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
+#include "experiments/parallel.h"
 #include "experiments/progress.h"
 #include "experiments/reference.h"
 
@@ -65,8 +65,7 @@ void render_rows(const IntegralSource& source, const Estimator& estimator, const
   const auto rounds = a.samples / static_cast<std::uint64_t>(estimator.allocation.round());
   const auto channels = static_cast<std::size_t>(source.channels());
   Progress progress(a.scene, static_cast<double>(a.samples) * source.pixels(), a.quiet);
-  tbb::task_arena arena(a.threads > 0 ? a.threads : tbb::task_arena::automatic);
-  arena.execute([&] {
+  with_threads(a.threads, [&](int) {
     tbb::parallel_for(0, source.height(), [&](int y) {
       PassEvaluator<T> evaluator(catalogue.samplers.make(a.sampler), source.techniques(), estimator.allocation,
                                  {estimator.heuristic}, {rounds}, source.channels());
@@ -142,7 +141,12 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   const Precision precision = parse_precision(a.precision);
   const auto source = make_source(catalogue, a.scene, a.resolution);
-  const Estimator estimator = flag("--estimator", [&] { return parse_estimator(a.estimator, source->techniques()); });
+  const Estimator estimator = flag("--estimator", [&] {
+    if (!a.estimator.empty()) return parse_estimator(a.estimator, source->techniques());
+    // Both techniques of a rendered scene; what an integrand has.
+    return parse_estimator(source->techniques().size() > 1 ? "balance" : source->techniques().front().name,
+                           source->techniques());
+  });
   const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(a.sampler); });
   const Layout layout = estimator.allocation.layout(source->techniques());
   if (layout.dims() > sampler->info().max_dims) {

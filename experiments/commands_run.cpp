@@ -105,6 +105,10 @@ int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
     const auto rows = listed(kind, catalogue);
     std::size_t width = 0;
     for (const Listed& row : rows) width = std::max(width, row.name.size());
+    if (arguments.names_only) {
+      for (const Listed& row : rows) fmt::print("{}\n", row.name.substr(0, row.name.find_first_of(":[")));
+      continue;
+    }
     if (!arguments.json) fmt::print("{}{}\n", kind, arguments.what.empty() ? ":" : "");
     for (const Listed& row : rows) {
       if (arguments.json) {

@@ -1,6 +1,5 @@
 #include "experiments/engine.h"
 
-#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <atomic>
@@ -18,6 +17,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
+#include "experiments/parallel.h"
 #include "experiments/progress.h"
 #include "experiments/reference.h"
 #include "experiments/run_folder.h"
@@ -66,10 +66,10 @@ class Runner {
         progress_(label, remaining(), quiet) {}
 
   void run(int threads) {
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    arena.execute([&] {
+    if (journal_.size() == plan_.units.size()) return;
+    with_threads(threads, [&](int count) {
       tbb::task_group group;
-      for (int t = 0; t < arena.max_concurrency(); ++t) group.run([&] { work(); });
+      for (int t = 0; t < count; ++t) group.run([&] { work(); });
       group.wait();
     });
     if (failure_) std::rethrow_exception(failure_);
@@ -128,6 +128,10 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   RunOutcome outcome;
   outcome.plan = make_plan(spec, catalogue);
   const Plan& plan = outcome.plan;
+  // What the user asked for and will not get must not be found out from a missing row.
+  if (!options.quiet) {
+    for (const auto& line : plan.left_out) fmt::print(stderr, "halfslope: {}\n", line);
+  }
   const RunFolder folder(options.out);
   if (options.overwrite) folder.remove_results();
   Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, options.overwrite);

@@ -67,8 +67,9 @@ std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estim
     }
   }
   if (!skipped.empty()) {
-    plan.skips.push_back(fmt::format("{} of the range's sample counts are skipped for sampler '{}': {}", skipped.size(),
-                                     sampler.info().name, why));
+    plan.left_out.push_back(fmt::format("{}{} of the range's sample counts left out: {}", legal.empty() ? "all " : "",
+                                        skipped.size(), why));
+    plan.skips.push_back(plan.left_out.back());
   }
   return legal;
 }
@@ -141,6 +142,14 @@ std::size_t pass_for(Plan& plan, const Pass& wanted) {
   }
   plan.passes.push_back(wanted);
   return plan.passes.size() - 1;
+}
+
+void remove_repeats(std::vector<std::string>& lines) {
+  std::vector<std::string> unique;
+  for (auto& line : lines) {
+    if (std::find(unique.begin(), unique.end(), line) == unique.end()) unique.push_back(std::move(line));
+  }
+  lines = std::move(unique);
 }
 
 void note_sharing(Plan& plan) {
@@ -244,15 +253,15 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
       }
     }
   }
-  if (plan.cells.empty())
-    fail_at(spec, "samples", "no sample count of the range is legal for any estimator and sampler: nothing to measure");
+  if (plan.cells.empty()) {
+    fail_at(spec, "samples",
+            "nothing to measure: no sample count of the range is legal for any estimator and sampler. " +
+                plan.left_out.front());
+  }
   for (std::size_t p = 0; p < plan.passes.size(); ++p) add_units(plan, p);
   note_sharing(plan);
-  std::vector<std::string> unique;
-  for (auto& line : plan.skips) {
-    if (std::find(unique.begin(), unique.end(), line) == unique.end()) unique.push_back(std::move(line));
-  }
-  plan.skips = std::move(unique);
+  remove_repeats(plan.skips);
+  remove_repeats(plan.left_out);
   return plan;
 }
 

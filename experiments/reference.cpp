@@ -1,7 +1,6 @@
 #include "experiments/reference.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <atomic>
@@ -18,6 +17,7 @@
 #include "experiments/bytes.h"
 #include "experiments/hash64.h"
 #include "experiments/interrupt.h"
+#include "experiments/parallel.h"
 #include "experiments/progress.h"
 
 namespace halfslope {
@@ -119,7 +119,7 @@ void Renderer::render(State& state, std::int64_t replicates) {
   const std::size_t tile_pixels = pixels_.size() <= kFewPixels ? 1 : kTile;
   const std::size_t tiles = (pixels_.size() + tile_pixels - 1) / tile_pixels;
   const StreamKey key = stream_key(0, "halton-owen", "reference");
-  Progress progress(name_ + ": reference",
+  Progress progress(fmt::format("{}: reference, replicates {} to {}", name_, first + 1, replicates),
                     static_cast<double>(samples()) * static_cast<double>(more) * static_cast<double>(pixels_.size()),
                     options_.quiet);
   std::atomic<bool> stop = false;
@@ -159,8 +159,8 @@ void Renderer::render(State& state, std::int64_t replicates) {
       }
     }
   };
-  tbb::task_arena arena(options_.threads > 0 ? options_.threads : tbb::task_arena::automatic);
-  arena.execute([&] { tbb::parallel_for(std::size_t{0}, pieces.size(), work, tbb::simple_partitioner()); });
+  with_threads(options_.threads,
+               [&](int) { tbb::parallel_for(std::size_t{0}, pieces.size(), work, tbb::simple_partitioner()); });
   if (stop) fail(ExitCode::kInterrupted, "interrupted while the reference was rendered; run again to start it anew");
   progress.finish();
 

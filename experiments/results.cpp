@@ -1,7 +1,6 @@
 #include "experiments/results.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <cmath>
 #include <map>
@@ -10,6 +9,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "experiments/interrupt.h"
+#include "experiments/parallel.h"
 
 namespace halfslope {
 namespace {
@@ -145,7 +145,6 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
   std::vector<std::map<std::uint32_t, ReferenceShare>> shares;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s)
     shares.push_back(reference_shares(plan.scenes[s], references[s]));
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
   const auto same_line = [&](std::size_t a, std::size_t b) {
     const Cell &x = plan.cells[a], &y = plan.cells[b];
     return x.scene == y.scene && x.estimator == y.estimator && x.sampler == y.sampler && x.precision == y.precision;
@@ -158,7 +157,7 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
     }
     while (end < plan.cells.size() && same_line(begin, end)) ++end;
     std::vector<FoldedCell> line(end - begin);
-    arena.execute([&] {
+    with_threads(threads, [&](int) {
       tbb::parallel_for(
           begin, end,
           [&](std::size_t c) {

@@ -45,7 +45,7 @@ void validate(const Spec& spec) {
   for (std::uint64_t count : spec.images)
     if (!std::binary_search(samples.begin(), samples.end(), count))
       fail(code_of(spec, {"images", "samples"}),
-           "{}: images: {} is not among the samples of {} ({}); take one of these, or none with --images none",
+           "{}: image count {} is not among the samples of {} ({}); take one of these, or none with --images none",
            place_of(spec, "images"), count, place_of(spec, "samples"), joined(samples));
 }
 

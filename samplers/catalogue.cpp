@@ -37,7 +37,7 @@ std::unique_ptr<Sampler> SamplerCatalogue::make(const std::string& name) const {
   for (const Entry& entry : entries_) {
     if (entry.info.name == name) return entry.make();
   }
-  fail(ExitCode::kBadInput, "there is no sampler '{}'{}; `halfslope list samplers` names them all", name,
+  fail(ExitCode::kBadInput, "there is no sampler '{}'{} (`halfslope list samplers` names them all)", name,
        did_you_mean(name, names()));
 }
 

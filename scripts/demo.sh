@@ -37,7 +37,7 @@ describe() { if [[ -e $out/$1 ]]; then printf '  %-18s %s\n' "$1" "$2"; fi; }
 describe convergence.csv "errors of every estimator and sampler at every N, with intervals"
 describe rates.csv "the slopes of log RMSE against log N"
 describe replicates.csv "each replicate's errors"
-describe timing.csv "nanoseconds a sample, and efficiency"
+describe regions.csv "errors over parts of the image: by shape, and by the light it mirrors"
 describe images "EXR images: mean, variance, squared error, bias"
 describe reference.exr "the reference image"
 describe manifest.json "what ran: the experiment, version, compiler, machine, and what was skipped"
