@@ -35,6 +35,7 @@ InterruptGuard::~InterruptGuard() {
   ::sigaction(SIGINT, &old_interrupt_, nullptr);
   ::sigaction(SIGTERM, &old_terminate_, nullptr);
   ::sigaction(SIGXFSZ, &old_file_size_, nullptr);
+  signalled = false;
 }
 
 bool interrupted() { return signalled; }

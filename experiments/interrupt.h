@@ -19,7 +19,7 @@ class InterruptGuard {
   struct sigaction old_interrupt_, old_terminate_, old_file_size_;
 };
 
-/// Whether a signal came since the last InterruptGuard was made.
+/// Whether a signal came while the InterruptGuard lives; false where there is none.
 bool interrupted();
 
 }  // namespace halfslope

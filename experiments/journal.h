@@ -25,7 +25,7 @@ namespace halfslope {
 struct JournalHeader {
   std::string spec_hash;  ///< of the spec and of what else determines the units
   std::string version;    ///< of halfslope
-  std::string isa_class;  ///< "fma" or "baseline": kernels of one class give the same bits
+  std::string isa_class;  ///< kernels of one class give the same bits
 };
 
 /// Payloads stay on disk; memory holds an index of 16 bytes and a key a unit. All functions but the constructor may be

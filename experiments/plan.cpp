@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 
 #include "core/error.h"
 #include "experiments/joined.h"
@@ -162,10 +163,11 @@ void note_sharing(Plan& plan) {
                                        joined(names)));
     }
     if (pass.sequence && pass.samples.size() > 1) {
-      plan.skips.push_back(fmt::format("{}, {}, {}: a sequence, so N = {} … {} are prefixes of one pass to {}",
-                                       plan.scenes[pass.scene].name, pass.sampler, to_string(pass.precision),
-                                       pass.samples.front(), pass.samples[pass.samples.size() - 2],
-                                       pass.samples.back()));
+      const std::span smaller(pass.samples.data(), pass.samples.size() - 1);
+      plan.skips.push_back(fmt::format(
+          "{}, {}, {}: a sequence, so N = {} {} of one pass to {}", plan.scenes[pass.scene].name, pass.sampler,
+          to_string(pass.precision), smaller.front(),
+          smaller.size() > 1 ? fmt::format("… {} are prefixes", smaller.back()) : "is a prefix", pass.samples.back()));
     }
   }
 }

@@ -40,7 +40,7 @@ class HaltonOwen final : public Sampler {
   std::optional<LegalNeighbours> illegal(std::uint64_t count, const Layout& layout) const override {
     // The kernel holds a point's digits in 31 bits.
     std::uint64_t most = info().max_count;
-    for (int d = 0; d < layout.dims(); ++d) {
+    for (int d = 0; d < std::min(layout.dims(), kDims); ++d) {
       const std::uint64_t base = primes()[static_cast<std::size_t>(d)];
       std::uint64_t power = base;
       while (power * base <= info().max_count) power *= base;

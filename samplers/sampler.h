@@ -35,7 +35,7 @@ struct LegalNeighbours {
 /// `replicate` + kLanes − 1 of the pixel.
 struct PointRequest {
   std::uint64_t count = 0;
-  const Layout* layout = nullptr;
+  const Layout* layout = nullptr;  ///< must outlive the fills
   StreamKey key;
   std::uint32_t pixel = 0, replicate = 0;
   bool low_words = false;  ///< for binary64

@@ -177,6 +177,27 @@ TEST(ClosedForms, ACoplanarShapeShadesNothing) {
   EXPECT_GT(compared, 10);
 }
 
+TEST(ClosedForms, Binary32KnowsWhichSideOfACloseWallItIsOn) {
+  // A wide wall passes 3e-7 behind the receiver and through the light, of which it hides the half behind it. Binary32
+  // rounds the wall's centre by more than that.
+  const Primitive receiver =
+      made_of(rectangle(Vec3::Zero(), 0.1 * Vec3::UnitX(), 0.1 * Vec3::UnitY()), diffuse(grey(0.7)));
+  const Vec3 n = Vec3(0.8, 0.3, 0.5).normalized(), side = n.cross(Vec3::UnitZ()).normalized(), up = side.cross(n);
+  const Primitive wall = rectangle(-3e-7 * n + 13 * up + 7 * side, 60 * side, 60 * up);
+  const Primitive light = emitting(sphere(2 * up, 0.5), grey(1));
+  std::vector<Ray> rays;
+  for (int i = 0; i < 32; ++i) rays.push_back(looking(0.01 * n, 0.0005 * i * side));
+  const DirectLighting source = lighting(scene_of({receiver, wall, light}, rays));
+  for (int pixel = 0; pixel < source.pixels(); ++pixel) {
+    const Request request = {.estimator = "light", .rounds = 64, .replicates = kLanes};
+    const auto f32 = estimate<float>(source, pixel, request)[0], f64 = estimate<double>(source, pixel, request)[0];
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      ASSERT_GT(f64[l], 0);
+      ASSERT_NEAR(f32[l] / f64[l], 1, 1e-4) << pixel;
+    }
+  }
+}
+
 TEST(ClosedForms, TheUnitOfLengthDoesNotMatter) {
   const Scene scene = floor_under({ceiling_light(2, 1, 0.5, grey(3))}, diffuse(grey(0.6)));
   for (const double unit : {0x1p-100, 0x1p-70, 0x1p70, 0x1p100}) {  // r² is beyond binary32, r is not

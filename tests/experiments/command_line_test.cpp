@@ -109,8 +109,7 @@ TEST_F(CommandLine, AnIllegalNNamesItsLegalNeighbours) {
   // Inside a range it is skipped, and the plan says so.
   const Ended plan = run({"--estimators", "balance", "--samples", "1:4", "--dry-run"});
   EXPECT_EQ(plan.code, 0);
-  EXPECT_THAT(plan.out, HasSubstr("1 of the range's sample counts are skipped for sampler 'independent': 'balance' "
-                                  "takes 2 samples a round, so N = 1 does not divide"));
+  EXPECT_THAT(plan.out, AllOf(HasSubstr("1 of the range's sample counts"), HasSubstr("N = 1 does not divide")));
   EXPECT_THAT(refusal({"--estimators", "balance", "--samples", "1:1"}, 2), HasSubstr("nothing to measure"));
 }
 

@@ -12,6 +12,7 @@ TEST(Interrupt, FirstSignalSetsTheFlag) {
     ::raise(signal);
     EXPECT_TRUE(interrupted());
   }
+  EXPECT_FALSE(interrupted());
 }
 
 TEST(InterruptDeathTest, SecondSignalEndsWith130) {
