@@ -1,6 +1,8 @@
 #include "experiments/command_line.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -10,6 +12,7 @@
 #include "core/error.h"
 #include "core/version.h"
 #include "experiments/commands.h"
+#include "experiments/message.h"
 #include "experiments/spec_keys.h"
 
 namespace halfslope {
@@ -158,8 +161,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       names.push_back(command->get_name());
     std::string hint;
     if (argc > 1 && app.get_subcommands().empty()) hint = did_you_mean(argv[1], names);
-    fmt::print(stderr, "halfslope: {}{}\nTry `halfslope {}--help`.\n", error.what(), hint,
-               app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
+    message("halfslope: {}{}\nTry `halfslope {}--help`.\n", error.what(), hint,
+            app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
     return static_cast<int>(ExitCode::kUsage);
   }
   if (run_app->parsed()) return run_command(run, catalogue);
@@ -174,22 +177,31 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   return 0;
 }
 
+// The number of a closed standard stream would go to the next file that is opened, and text meant for the stream into
+// that file. What is opened here instead refuses it, as a closed stream does.
+void occupy_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) < 0) ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 }  // namespace
 
 int command_line(int argc, const char* const* argv, const Catalogue& catalogue) {
+  occupy_closed_streams();
   int code = static_cast<int>(ExitCode::kIo);
   try {
     code = parse_and_run(argc, argv, catalogue);
   } catch (const Error& error) {
-    fmt::print(stderr, "halfslope: {}\n", error.what());
+    message("halfslope: {}\n", error.what());
     code = static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "halfslope: out of memory; ask for fewer pixels or replicates\n");
+    message("halfslope: out of memory; ask for fewer pixels or replicates\n");
   } catch (const std::exception& error) {
-    fmt::print(stderr, "halfslope: {}\n", error.what());
+    message("halfslope: {}\n", error.what());
   }
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    fmt::print(stderr, "halfslope: standard output could not be written\n");
+    message("halfslope: standard output could not be written\n");
     code = code == 0 ? static_cast<int>(ExitCode::kIo) : code;
   }
   return code;

@@ -15,6 +15,7 @@
 #include "experiments/commands.h"
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
+#include "experiments/message.h"
 #include "experiments/parallel.h"
 #include "experiments/progress.h"
 #include "experiments/reference.h"
@@ -165,7 +166,7 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   std::erase_if(image.channels, [](const ExrImage::Channel& c) { return c.name.starts_with("variance"); });
   const std::string out = a.out.empty() ? path_component(a.scene) + ".exr" : a.out;
   write_exr(out, image);
-  if (!a.quiet) fmt::print(stderr, "wrote {}\n", out);
+  if (!a.quiet) message("wrote {}\n", out);
   return kDone;
 }
 
@@ -186,7 +187,7 @@ int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   const Reference reference =
       make_reference(*source, a.scene, pixels, goal,
                      {a.threads, a.quiet, a.no_cache ? std::filesystem::path() : default_cache()}, catalogue.samplers);
-  if (!a.quiet) fmt::print(stderr, "{}: {}\n", a.scene, reference.origin);
+  if (!a.quiet) message("{}: {}\n", a.scene, reference.origin);
   if (!a.out.empty()) write_exr(a.out, reference_image(*source, reference));
   const auto channels = static_cast<std::size_t>(source->channels());
   if (a.json) {

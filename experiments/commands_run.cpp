@@ -11,6 +11,7 @@
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
 #include "experiments/manifest.h"
+#include "experiments/message.h"
 #include "experiments/tables.h"
 
 namespace halfslope {
@@ -86,8 +87,8 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
     fmt::print("{}\nTables and images: {}\n", summary(outcome.plan, outcome.results), out);
   }
   if (outcome.invalid_cells > 0) {
-    fmt::print(stderr, "halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",
-               outcome.invalid_cells, outcome.plan.cells.size(), out);
+    message("halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",
+            outcome.invalid_cells, outcome.plan.cells.size(), out);
     return static_cast<int>(ExitCode::kCheckFailed);
   }
   return static_cast<int>(ExitCode::kDone);

@@ -17,6 +17,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
+#include "experiments/message.h"
 #include "experiments/parallel.h"
 #include "experiments/progress.h"
 #include "experiments/reference.h"
@@ -66,7 +67,6 @@ class Runner {
         progress_(label, remaining(), quiet) {}
 
   void run(int threads) {
-    if (journal_.size() == plan_.units.size()) return;
     with_threads(threads, [&](int count) {
       tbb::task_group group;
       for (int t = 0; t < count; ++t) group.run([&] { work(); });
@@ -130,18 +130,21 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   const Plan& plan = outcome.plan;
   // What the user asked for and will not get must not be found out from a missing row.
   if (!options.quiet) {
-    for (const auto& line : plan.left_out) fmt::print(stderr, "halfslope: {}\n", line);
+    for (const auto& line : plan.left_out) message("halfslope: {}\n", line);
   }
   const RunFolder folder(options.out);
   if (options.overwrite) folder.remove_results();
   Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, options.overwrite);
   if (journal.dropped_bytes() > 0 && !options.quiet) {
-    fmt::print(stderr,
-               "halfslope: {} bytes at the journal's end were damaged by an interruption; those units are done again\n",
-               journal.dropped_bytes());
+    message("halfslope: {} bytes at the journal's end were damaged by an interruption; those units are done again\n",
+            journal.dropped_bytes());
   }
   const std::vector<Reference> references = make_references(plan, catalogue, options);
-  Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
+  if (journal.size() < plan.units.size()) {
+    Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
+  } else if (!options.quiet) {
+    message("{}: everything was measured already; the tables are written anew\n", spec.name);
+  }
   journal.sync();
 
   AtomicFile replicates_file(folder.path("replicates.csv"));

@@ -17,6 +17,7 @@
 #include "experiments/bytes.h"
 #include "experiments/hash64.h"
 #include "experiments/interrupt.h"
+#include "experiments/message.h"
 #include "experiments/parallel.h"
 #include "experiments/progress.h"
 
@@ -222,7 +223,7 @@ void Renderer::save(const State& state) const {
     std::filesystem::create_directories(options_.cache);
     write_file_atomically(file(state.replicates()), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   } catch (const std::exception& error) {
-    if (!options_.quiet) fmt::print(stderr, "halfslope: the reference is not kept for later: {}\n", error.what());
+    if (!options_.quiet) message("halfslope: the reference is not kept for later: {}\n", error.what());
   }
 }
 

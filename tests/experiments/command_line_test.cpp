@@ -269,6 +269,25 @@ TEST_F(CommandLine, StandardOutputThatCannotBeWrittenIsAnIoError) {
   EXPECT_EQ(run_with(full, {"--json"}).code, 4);
 }
 
+// A closed stream's number must not go to the journal, which messages would then overwrite.
+TEST_F(CommandLine, ClosedStreamsDoNoHarm) {
+  const std::vector<std::string> arguments = {"run",        "--out",       out(),       "--scene", "mis-toy",
+                                              "--samplers", "independent", "--samples", "16"};
+  ASSERT_EQ(command(arguments).code, 0);
+  const std::string whole = read_file(folder_ / "out/convergence.csv");
+  for (const char* broken : {"closed", "/dev/full"}) {
+    ChildOptions streams = options();
+    streams.err_path = broken;
+    EXPECT_EQ(run_program(arguments + std::vector<std::string>{"--overwrite"}, streams).code, 0);
+    EXPECT_EQ(run_program({"rnu"}, streams).code, 2);
+    EXPECT_EQ(run_program({"render", "--scene", "none.xml"}, streams).code, 3);
+    streams.out_path = broken;
+    EXPECT_EQ(run_program(arguments + std::vector<std::string>{"--overwrite"}, streams).code, 4);  // no summary
+    EXPECT_EQ(command(arguments).code, 0);  // the journal is whole
+    EXPECT_EQ(read_file(folder_ / "out/convergence.csv"), whole);
+  }
+}
+
 TEST_F(CommandLine, ASecondRunInTheFolderIsBusyAtOnce) {
   const std::vector<std::string> seconds_of_work = {"--samples", "4:4096", "--replicates", "16384"};
   std::vector<std::string> arguments = {"run",     "--quiet", "--out",      out(),

@@ -30,9 +30,10 @@ struct Ended {
 
 struct ChildOptions {
   std::map<std::string, std::string> environment = {};  ///< beside what we have ourselves
-  std::string out_path = {};                            ///< where stdout goes instead of Ended::out, e.g. /dev/full
-  std::optional<rlim_t> largest_file = {};              ///< RLIMIT_FSIZE
-  std::vector<std::string> launcher = {};               ///< put before the program: an emulator and its flags
+  std::string out_path = {};  ///< where stdout goes instead of Ended::out, e.g. /dev/full; "closed" closes it
+  std::string err_path = {};  ///< likewise
+  std::optional<rlim_t> largest_file = {};  ///< RLIMIT_FSIZE
+  std::vector<std::string> launcher = {};   ///< put before the program: an emulator and its flags
   std::string program = kProgram;
 };
 
@@ -66,10 +67,9 @@ class Child {
       const rlimit limit = {*options.largest_file, *options.largest_file};
       ::setrlimit(RLIMIT_FSIZE, &limit);
     }
-    const int out = options.out_path.empty() ? out_ : ::open(options.out_path.c_str(), O_WRONLY);
     ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
-    ::dup2(out, STDOUT_FILENO);
-    ::dup2(err_, STDERR_FILENO);
+    redirect(STDOUT_FILENO, options.out_path, out_);
+    redirect(STDERR_FILENO, options.err_path, err_);
     ::execve(argv[0], argv.data(), envp.data());
     ::_exit(127);
   }
@@ -99,6 +99,13 @@ class Child {
   }
 
  private:
+  static void redirect(int stream, const std::string& path, int otherwise) {
+    if (path == "closed") {
+      ::close(stream);
+    } else {
+      ::dup2(path.empty() ? otherwise : ::open(path.c_str(), O_WRONLY | O_CLOEXEC), stream);
+    }
+  }
   static std::string text_of(int file) {
     std::string text(static_cast<std::size_t>(::lseek(file, 0, SEEK_END)), '\0');
     const ssize_t got = ::pread(file, text.data(), text.size(), 0);

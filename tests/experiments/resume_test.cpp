@@ -68,53 +68,55 @@ bool wait_until(Child& child, Condition condition) {
   return false;
 }
 
-TEST_F(Resume, AfterKillsAtTenMomentsTheBytesAreTheSame) {
-  const Files expected = whole(arguments("whole"));
-  // Three moments that are known to lie in the reference, among the units and in the pictures; seven at random.
-  const std::vector<std::function<bool()>> moments = {
-      [&] { return exists("cache") && !std::filesystem::is_empty(folder_ / "cache"); },
-      [&] { return size("out/journal") > kHeader; },
-      [&] { return exists("out/images"); },
-  };
-  std::mt19937 random(20260801);
-  std::string out = "out";
-  int kills = 0;
-  for (int attempt = 0; kills < 10; ++attempt) {
-    ASSERT_LT(attempt, 40);
-    const auto started = std::chrono::steady_clock::now();
+class ResumeKilled : public Resume {
+ protected:
+  /// Runs into `out` until the condition holds, and kills; false if the run was done before.
+  template <class Condition>
+  bool kill_when(const std::string& out, Condition condition) {
     Child child(arguments(out), options("cache"));
-    const auto at = static_cast<std::size_t>(kills);
-    bool alive = false;
-    if (at < moments.size()) {
-      alive = wait_until(child, moments[at]);
-      ASSERT_TRUE(alive) << "moment " << at << " never came: " << child.wait().err;
-    } else {
-      // Ten such delays would be about one run; what they lose is the units at hand and a part of a reference.
-      const std::chrono::duration<double> delay(std::uniform_real_distribution(0.0, 0.2 * seconds_)(random));
-      alive = wait_until(child, [&] { return std::chrono::steady_clock::now() - started > delay; });
-    }
-    if (alive) {
-      child.signal(SIGKILL);
-      EXPECT_THAT(child.wait().code, AnyOf(128 + SIGKILL, 0));
+    const bool alive = wait_until(child, condition);
+    if (alive) child.signal(SIGKILL);
+    const Ended ended = child.wait();
+    EXPECT_THAT(ended.code, AnyOf(alive ? 128 + SIGKILL : 0, 0)) << ended.err;
+    return ended.code != 0;
+  }
+  void finish(const std::string& out, const Files& expected) {
+    const Ended ended = run_program(arguments(out), options("cache"));
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    expect_same_files(expected, run_files(folder_ / out.c_str()), out);
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / out.c_str()))
+      EXPECT_NE(entry.path().extension(), ".tmp") << entry.path() << " was left behind";
+  }
+};
+
+// Three moments that are known to lie in the reference, among the units and in the pictures, and seven at random.
+TEST_F(ResumeKilled, AtTenMomentsItEndsWithTheSameBytes) {
+  const Files expected = whole(arguments("whole"));
+  ASSERT_TRUE(kill_when("tables", [&] { return exists("tables/images"); }));
+  finish("tables", expected);
+  std::filesystem::remove_all(folder_ / "cache");
+
+  std::string out = "out";
+  ASSERT_TRUE(kill_when(out, [&] { return exists("cache") && !std::filesystem::is_empty(folder_ / "cache"); }));
+  ASSERT_TRUE(kill_when(out, [&] { return size(out + "/journal") > kHeader; }));
+  std::mt19937 random(20260801);
+  for (int kills = 0, attempt = 0; kills < 7; ++attempt) {
+    ASSERT_LT(attempt, 40);
+    const std::chrono::duration<double> delay(std::uniform_real_distribution(0.0, 0.4 * seconds_)(random));
+    const auto moment = std::chrono::steady_clock::now() + delay;
+    if (kill_when(out, [&] { return std::chrono::steady_clock::now() > moment; })) {
       ++kills;
       continue;
     }
-    const Ended ended = child.wait();  // done before its moment came: compare, and begin again for the next kill
-    ASSERT_EQ(ended.code, 0) << ended.err;
-    expect_same_files(expected, run_files(folder_ / out.c_str()), out);
+    finish(out, expected);  // it was done before its moment came: the next kills are for a new one
     out = "out-" + std::to_string(attempt);
     std::filesystem::remove_all(folder_ / "cache");
   }
-  const Ended ended = run_program(arguments(out), options("cache"));
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  expect_same_files(expected, run_files(folder_ / out.c_str()), out);
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_ / out.c_str()))
-    EXPECT_NE(entry.path().extension(), ".tmp") << entry.path() << " was left behind";
+  finish(out, expected);
   // A finished run is not done again.
-  const Ended again = run_program(arguments(out), options("cache"));
-  EXPECT_EQ(again.code, 0);
-  EXPECT_THAT(again.err, HasSubstr(", 0 samples in"));
-  expect_same_files(expected, run_files(folder_ / out.c_str()), "once more");
+  const std::string journal = read_file(folder_ / out.c_str() / "journal");
+  finish(out, expected);
+  EXPECT_EQ(read_file(folder_ / out.c_str() / "journal"), journal);
 }
 
 TEST_F(Resume, AnInterruptKeepsWhatIsDone) {

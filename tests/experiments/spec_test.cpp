@@ -248,7 +248,7 @@ TEST(SpecValidate, ImagesAreAmongTheSamples) {
   apply_flag(spec, "samples", "4:8");
   const Error error = error_of([&] { validate(spec); });
   EXPECT_EQ(error.code(), ExitCode::kUsage);
-  EXPECT_THAT(error.what(), StartsWith("x.toml:4:10: images: 16 is not among the samples of --samples (4, 8)"));
+  EXPECT_THAT(error.what(), StartsWith("x.toml:4:10: image count 16 is not among the samples of --samples (4, 8)"));
   apply_flag(spec, "images", "none");
   EXPECT_NO_THROW(validate(spec));
   EXPECT_THAT(spec.images, IsEmpty());
