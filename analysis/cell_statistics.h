@@ -63,13 +63,15 @@ struct CellStatistics {
 ///               MSE; log_mean_t where they are not kept), less V̄, rooted; an end that is not positive then is empty
 ///   relmse      mean e²/(R̂² + 0.01) less the reference's share, its interval likewise
 ///   kurtosis    Σ_p m4_p / Σ_p m2_p² over replicates about each integral's own mean; 3 for normal errors, whatever
-///   their
-///               variances
+///               their variances
 ///
-/// Marks, in this order: `invalid` (an estimate is not finite, or a reference, or their squared errors); `exact` (every
-/// error is 0; rmse is 0, without interval); `deterministic` (the sampler is, or R = 1: variance, kurtosis and intervals are empty); `few-replicates`
-/// (R < 16) and `heavy-tailed` (kurtosis > max(5, R/40)): the intervals are not certified; `reference-limited` (V̄ > 10
-/// % of M, or a difference M − V̄ that is not positive, whose root is then empty).
+/// Marks, in this order:
+///   invalid            an estimate is not finite, or a reference, or their squared errors
+///   exact              every error is 0; rmse is 0, without interval
+///   deterministic      the sampler is, or R = 1: variance, kurtosis and intervals are empty
+///   few-replicates     R < 16: the intervals are not certified
+///   heavy-tailed       kurtosis > max(5, R/40): the intervals are not certified
+///   reference-limited  V̄ > 10 % of M, or a difference M − V̄ that is not positive, whose root is then empty
 CellStatistics summarise(const CellData& data);
 
 }  // namespace halfslope

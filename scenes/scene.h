@@ -30,9 +30,9 @@ struct Rectangle {
 /// Reflection at a surface, one-sided: it reflects only where both directions are on the front.
 struct Bsdf {
   BsdfKind kind = BsdfKind::kDiffuse;
-  Rgb reflectance = Rgb::Constant(0.5);  ///< diffuse albedo, or the conductor's specular_reflectance
-  double alpha = 0.1;                    ///< GGX roughness, isotropic, in (0, 1]
-  bool unit_fresnel = true;              ///< material "none": F = 1
+  Rgb reflectance = Rgb::Constant(0.5);    ///< diffuse albedo, or the conductor's specular_reflectance
+  double alpha = 0.1;                      ///< GGX roughness, isotropic, in (0, 1]
+  bool unit_fresnel = true;                ///< material "none": F = 1
   Rgb eta = Rgb::Zero(), k = Rgb::Zero();  ///< complex index of refraction per channel, where F is not 1
 };
 
