@@ -63,8 +63,10 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
   if (!arguments.file.empty()) spec = load_spec(arguments.file);
   for (const auto& [key, value] : arguments.keys) apply_flag(spec, key, value);
   validate(spec);
+  const std::string out = arguments.out.empty() ? "out/" + path_component(spec.name) : arguments.out;
   if (arguments.dry_run) {
-    const Plan plan = make_plan(spec, catalogue);
+    Plan plan = make_plan(spec, catalogue);
+    note_finished_work(plan, spec, catalogue, out);
     if (arguments.json) {
       fmt::print("{}\n", Json{{"name", spec.name},
                               {"cells", plan.cells.size()},
@@ -78,7 +80,6 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
     }
     return static_cast<int>(ExitCode::kDone);
   }
-  const std::string out = arguments.out.empty() ? "out/" + path_component(spec.name) : arguments.out;
   const RunOutcome outcome =
       run_experiment(spec, catalogue, {out, arguments.threads, arguments.quiet, arguments.overwrite});
   if (arguments.json) {

@@ -32,18 +32,23 @@ namespace {
 /// the reference's own estimator's at the largest N, halved lest another does better.
 constexpr double kReferenceErrorShare = 0.01 / 2;
 
+ReferenceGoal reference_goal(const Plan& plan, std::size_t scene) {
+  std::uint64_t largest = 1;
+  for (const Cell& cell : plan.cells) {
+    if (cell.scene == scene) largest = std::max(largest, cell.samples);
+  }
+  ReferenceGoal goal;
+  goal.compare_samples = largest;
+  goal.samples = std::max<std::uint64_t>(256, 4 * largest);
+  goal.error_share = kReferenceErrorShare;
+  return goal;
+}
+
 std::vector<Reference> make_references(const Plan& plan, const Catalogue& catalogue, const RunOptions& options) {
   std::vector<Reference> references;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
-    std::uint64_t largest = 1;
-    for (const Cell& cell : plan.cells) {
-      if (cell.scene == s) largest = std::max(largest, cell.samples);
-    }
-    ReferenceGoal goal;
-    goal.compare_samples = largest;
-    goal.samples = std::max<std::uint64_t>(256, 4 * largest);
-    goal.error_share = kReferenceErrorShare;
-    references.push_back(make_reference(*plan.scenes[s].source, plan.scenes[s].name, plan.scenes[s].pixels, goal,
+    const PlannedScene& scene = plan.scenes[s];
+    references.push_back(make_reference(*scene.source, scene.name, scene.pixels, reference_goal(plan, s),
                                         {options.threads, options.quiet, default_cache()}, catalogue.samplers));
   }
   return references;
@@ -170,6 +175,27 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   write("convergence.csv", convergence_csv(plan, outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references));
   return outcome;
+}
+
+void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue, const std::filesystem::path& out) {
+  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
+    const PlannedScene& scene = plan.scenes[s];
+    const auto held =
+        cached_replicates(*scene.source, scene.pixels, reference_goal(plan, s), default_cache(), catalogue.samplers);
+    if (held > 0) {
+      plan.skips.push_back(fmt::format("{}: {} replicates of its reference are in {}: not rendered again", scene.name,
+                                       held, default_cache().string()));
+    }
+  }
+  if (!std::filesystem::exists(out / "journal")) return;
+  try {
+    const RunFolder folder(out);
+    const Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, false);
+    plan.skips.push_back(fmt::format("{} of {} units of work are in {}: not measured again", journal.size(),
+                                     plan.units.size(), (out / "journal").string()));
+  } catch (const Error& error) {
+    plan.skips.push_back(fmt::format("nothing that is in {}: {}", out.string(), error.what()));
+  }
 }
 
 std::string describe_plan(const Spec& spec, const Plan& plan) {

@@ -27,6 +27,9 @@ struct RunOutcome {
 /// signal it throws Error(kInterrupted), and the same call goes on from there to the same bytes.
 RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const RunOptions& options);
 
+/// Adds to the plan's skips what an earlier run left: units in the journal of `out`, replicates of references.
+void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue, const std::filesystem::path& out);
+
 /// What --dry-run prints: the work, and what is skipped and why.
 std::string describe_plan(const Spec& spec, const Plan& plan);
 

@@ -79,6 +79,9 @@ class Renderer {
 
   std::uint64_t samples() const { return rounds_[1] * static_cast<std::uint64_t>(allocation_.round()); }
 
+  bool cached(std::int64_t replicates) const {
+    return !options_.cache.empty() && std::filesystem::exists(file(replicates));
+  }
   /// Brings the state to `replicates`, from the cache if it is there.
   void extend(State& state, std::int64_t replicates) {
     if (load(state, replicates)) return;
@@ -298,6 +301,17 @@ Reference make_reference(const IntegralSource& source, const std::string& name, 
   reference.mean = means.mean;
   reference.mean_se = means.standard_error();
   return reference;
+}
+
+std::int64_t cached_replicates(const IntegralSource& source, const std::vector<int>& pixels, const ReferenceGoal& goal,
+                               const std::filesystem::path& cache, const SamplerCatalogue& samplers) {
+  if (source.closed_form(pixels.front())) return 0;
+  const ReferenceOptions options = {0, true, cache};
+  const std::string name;
+  const Renderer renderer(source, name, pixels, goal, options, samplers);
+  std::int64_t held = 0;
+  for (std::int64_t r = kFirstReplicates; renderer.cached(r); r *= 2) held = r;
+  return held;
 }
 
 std::filesystem::path default_cache() {

@@ -52,6 +52,10 @@ struct ReferenceOptions {
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers);
 
+/// How many replicates of that reference the cache holds from the first on; 0 for a closed form.
+std::int64_t cached_replicates(const IntegralSource& source, const std::vector<int>& pixels, const ReferenceGoal& goal,
+                               const std::filesystem::path& cache, const SamplerCatalogue& samplers);
+
 /// $HALFSLOPE_CACHE, or halfslope/ in $XDG_CACHE_HOME or ~/.cache; empty where neither is known.
 std::filesystem::path default_cache();
 

@@ -219,6 +219,9 @@ class Emulated : public Determinism {
 };
 
 TEST_F(Emulated, OlderProcessorsRunTheirOwnKernels) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the emulator has no room for AddressSanitizer's shadow memory";
+#endif
   if (!std::filesystem::exists("/usr/bin/qemu-x86_64")) GTEST_SKIP() << "no qemu-x86_64 (Debian: qemu-user)";
   ASSERT_EQ(run_on("", "native").code, 0);
   const Ended haswell = run_on("Haswell", "haswell"), nehalem = run_on("Nehalem", "nehalem");
