@@ -317,52 +317,5 @@ TEST(Engine, PrecisionsSeeTheSamePoints) {
   EXPECT_EQ(compared, 40);
 }
 
-TEST(Engine, OneReplicateHasNoSpread) {
-  const RunScope scope;
-  scope.run({{"scene", "mis-toy"},
-             {"estimators", "light"},
-             {"samplers", "independent"},
-             {"samples", "4,8"},
-             {"replicates", "1"}});
-  const CsvTable cells = scope.table("convergence.csv"), rates = scope.table("rates.csv");
-  for (std::size_t r = 0; r < 2; ++r) {
-    for (const char* column : {"bias_se", "variance", "kurtosis", "rmse_lo", "rmse_hi"})
-      EXPECT_THAT(cells.text(r, column), IsEmpty()) << column;
-    EXPECT_EQ(cells.text(r, "status"), "deterministic");
-    EXPECT_TRUE(near(cells.number(r, "rmse"), std::fabs(cells.number(r, "bias")), 1e-12));
-  }
-  EXPECT_EQ(rates.text(0, "status"), "deterministic");
-  EXPECT_THAT(rates.text(0, "rate_lo"), IsEmpty());
-}
-
-// An estimator without error: f/p of the BSDF technique of a cap that fills its lobe's hemisphere is constant.
-TEST(Engine, AnEstimatorWithoutErrorIsExact) {
-  const RunScope scope;
-  scope.run({{"scene", "mis-toy"},
-             {"estimators", "bsdf"},
-             {"samplers", "independent"},
-             {"samples", "4,8"},
-             {"replicates", "20"}});
-  const CsvTable cells = scope.table("convergence.csv"), rates = scope.table("rates.csv");
-  for (std::size_t r = 0; r < 2; ++r) {
-    EXPECT_EQ(cells.text(r, "rmse"), "0");
-    EXPECT_EQ(cells.text(r, "variance"), "0");
-    EXPECT_THAT(cells.text(r, "kurtosis"), IsEmpty());
-    EXPECT_EQ(cells.text(r, "status"), "exact");
-  }
-  EXPECT_EQ(rates.text(0, "status"), "exact");
-  EXPECT_THAT(rates.text(0, "rate"), IsEmpty());
-}
-
-TEST(Engine, ASingleNHasNoRate) {
-  const RunScope scope;
-  scope.run({{"scene", "quarterdisk"}, {"samplers", "independent"}, {"samples", "64"}, {"replicates", "20"}});
-  const CsvTable rates = scope.table("rates.csv");
-  ASSERT_EQ(rates.size(), 1u);
-  for (const char* column : {"rate", "rate_lo", "rate_hi", "samples_lo", "samples_hi"})
-    EXPECT_THAT(rates.text(0, column), IsEmpty()) << column;
-  EXPECT_EQ(rates.text(0, "status"), "too-few-points");
-}
-
 }  // namespace
 }  // namespace halfslope
