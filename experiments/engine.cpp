@@ -3,6 +3,7 @@
 #include <tbb/task_group.h>
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -130,6 +131,7 @@ class Runner {
 }  // namespace
 
 RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const RunOptions& options) {
+  const auto started = std::chrono::system_clock::now();
   RunOutcome outcome;
   outcome.plan = make_plan(spec, catalogue);
   const Plan& plan = outcome.plan;
@@ -173,7 +175,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   write("rates.csv", rates_csv(plan, outcome.results));
   write("regions.csv", regions_csv(plan, outcome.results));
   write("convergence.csv", convergence_csv(plan, outcome.results));
-  write("manifest.json", manifest_json(spec, plan, outcome.results, references));
+  write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
   return outcome;
 }
 

@@ -16,8 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string now_utc() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+std::string utc_text(std::chrono::system_clock::time_point moment) {
+  const std::time_t now = std::chrono::system_clock::to_time_t(moment);
   std::tm utc = {};
   gmtime_r(&now, &utc);
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
@@ -32,7 +32,7 @@ Json optional(const std::optional<double>& x) { return x ? Json(*x) : Json(nullp
 }  // namespace
 
 std::string manifest_json(const Spec& spec, const Plan& plan, const Results& results,
-                          const std::vector<Reference>& references) {
+                          const std::vector<Reference>& references, std::chrono::system_clock::time_point started) {
   utsname host = {};
   uname(&host);
   Json manifest;
@@ -48,7 +48,10 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
                       {"release", host.release},
                       {"machine", host.machine},
                       {"cores", std::thread::hardware_concurrency()}};
-  manifest["finished"] = now_utc();
+  const auto finished = std::chrono::system_clock::now();
+  manifest["started"] = utc_text(started);
+  manifest["finished"] = utc_text(finished);
+  manifest["seconds"] = std::chrono::duration<double>(finished - started).count();
   manifest["cells"] = plan.cells.size();
   manifest["evaluations"] = plan.evaluations();
   manifest["skipped"] = plan.skips;

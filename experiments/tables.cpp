@@ -39,11 +39,18 @@ ReplicatesTable::ReplicatesTable()
     : csv_({"scene", "estimator", "sampler", "precision", "samples", "replicate", "mean", "mse", "mae",
             "max_abs_error"}) {}
 
+namespace {
+
+// A number that is not finite is an empty cell, as in the other tables.
+std::optional<double> finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
+
+}  // namespace
+
 void ReplicatesTable::add(const Plan& plan, const Cell& cell, const std::vector<ReplicateErrors>& replicates) {
   for (std::size_t r = 0; r < replicates.size(); ++r) {
     key_cells(csv_, plan, cell);
-    csv_.cell(cell.samples).cell(r).cell(replicates[r].mean).cell(replicates[r].mse).cell(replicates[r].mae);
-    csv_.cell(replicates[r].max_abs_error).end_row();
+    csv_.cell(cell.samples).cell(r).cell(finite(replicates[r].mean)).cell(finite(replicates[r].mse));
+    csv_.cell(finite(replicates[r].mae)).cell(finite(replicates[r].max_abs_error)).end_row();
   }
 }
 

@@ -50,6 +50,17 @@ std::string on_terminal(const std::function<void()>& action) {
   return stderr_of(ours, ::open(::ptsname(ours), O_RDWR | O_NOCTTY), action);
 }
 
+// Bare containers may have no /dev/pts.
+class ProgressOnTerminal : public testing::Test {
+ protected:
+  void SetUp() override {
+    const int ours = ::posix_openpt(O_RDWR | O_NOCTTY);
+    const bool there = ours >= 0 && ::grantpt(ours) == 0 && ::unlockpt(ours) == 0;
+    if (ours >= 0) ::close(ours);
+    if (!there) GTEST_SKIP() << "this machine has no pseudo-terminals";
+  }
+};
+
 void work_in_two_halves(bool quiet) {
   Progress progress("veach-mis", 2000, quiet);
   progress.advance(1000);
@@ -64,7 +75,7 @@ TEST(Progress, OffATerminalThereIsOneLine) {
               MatchesRegex("done: veach-mis, 2\\.00 k samples in 0:00, [0-9.]+ k samples/s\n"));
 }
 
-TEST(Progress, OnATerminalThereIsABar) {
+TEST_F(ProgressOnTerminal, OnATerminalThereIsABar) {
   ::unsetenv("NO_COLOR");
   const std::string text = on_terminal([] { work_in_two_halves(false); });
   EXPECT_THAT(text, HasSubstr(" 50 %"));
@@ -75,7 +86,7 @@ TEST(Progress, OnATerminalThereIsABar) {
   EXPECT_THAT(text, HasSubstr("done: veach-mis"));
 }
 
-TEST(Progress, NoColorIsRespected) {
+TEST_F(ProgressOnTerminal, NoColorIsRespected) {
   const std::string text = on_terminal([] {
     ::setenv("NO_COLOR", "1", 1);
     work_in_two_halves(false);
@@ -84,12 +95,12 @@ TEST(Progress, NoColorIsRespected) {
   EXPECT_THAT(text, Not(HasSubstr("\x1b[32m")));
 }
 
-TEST(Progress, QuietIsSilent) {
+TEST_F(ProgressOnTerminal, QuietIsSilent) {
   EXPECT_THAT(on_pipe([] { work_in_two_halves(true); }), IsEmpty());
   EXPECT_THAT(on_terminal([] { work_in_two_halves(true); }), IsEmpty());
 }
 
-TEST(Progress, AnUnfinishedBarIsCleared) {
+TEST_F(ProgressOnTerminal, AnUnfinishedBarIsCleared) {
   const std::string text = on_terminal([] {
     Progress progress("x", 10, false);
     progress.advance(1);
