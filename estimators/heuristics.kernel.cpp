@@ -47,7 +47,8 @@ void weigh(const FoldCall<T>& call, Heuristic heuristic, Count<kTechniques> tech
     for (int q = 0; q < slots; ++q) {
       const T* values = call.terms + static_cast<std::size_t>(q) * rows * call.stride + p;
       const T* pdfs = values + static_cast<std::size_t>(call.channels) * call.stride;
-      const int i = call.slot_technique[q];
+      // One slot a technique: slot q is technique q, and indices are known to the compiler.
+      const int i = kSlots > 0 && kSlots == kTechniques ? q : call.slot_technique[q];
       F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
       ratios[0] = load<F>(pdfs);
       for (int k = 1; k < techniques; ++k) ratios[k] = load<F>(pdfs + static_cast<std::size_t>(k) * call.stride);
