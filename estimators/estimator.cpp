@@ -45,8 +45,8 @@ Allocation parse_allocation(const std::string& name, std::string_view list, std:
     const std::string technique(item.substr(0, star));
     const auto index = find(techniques, technique);
     if (!index) {
-      fail(ExitCode::kBadInput, "estimator '{}': there is no technique '{}' here{}; this scene has {}", name, technique,
-           did_you_mean(technique, names), fmt::join(names, ", "));
+      fail(ExitCode::kBadInput, "estimator '{}': there is no technique '{}' here{} (this scene has {})", name,
+           technique, did_you_mean(technique, names), fmt::join(names, ", "));
     }
     int& count = counts[static_cast<std::size_t>(*index)];
     if (count != 0) fail(ExitCode::kBadInput, "estimator '{}': technique '{}' stands twice", name, technique);
@@ -95,8 +95,8 @@ Heuristic parse_heuristic(const std::string& name, std::string_view text, std::s
   }
   auto allowed = names_of(techniques);
   for (const char* heuristic : {"average", "balance", "power"}) allowed.emplace_back(heuristic);
-  fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{}; it has {}", kind, did_you_mean(kind, allowed),
-       fmt::join(allowed, ", "));
+  fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{} (it has {})", kind,
+       did_you_mean(kind, allowed), fmt::join(allowed, ", "));
 }
 
 }  // namespace

@@ -159,9 +159,11 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
       names.push_back(command->get_name());
-    std::string hint;
-    if (argc > 1 && app.get_subcommands().empty()) hint = did_you_mean(argv[1], names);
-    message("halfslope: {}{}\nTry `halfslope {}--help`.\n", error.what(), hint,
+    std::string problem = error.what();
+    if (argc > 1 && argv[1][0] != '-' && app.get_subcommands().empty()) {
+      problem = fmt::format("there is no command '{}'{}", argv[1], did_you_mean(argv[1], names));
+    }
+    message("halfslope: {}\nTry `halfslope {}--help`.\n", problem,
             app.get_subcommands().empty() ? "" : app.get_subcommands().front()->get_name() + " ");
     return static_cast<int>(ExitCode::kUsage);
   }

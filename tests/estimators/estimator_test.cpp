@@ -85,14 +85,14 @@ std::string error_of(const std::string& name, const std::vector<Technique>& tech
 
 TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
   EXPECT_EQ(error_of("balence", kScene),
-            "there is no estimator 'balence' for this scene; did you mean 'balance'?; it has light, bsdf, average, "
-            "balance, power");
+            "there is no estimator 'balence' for this scene; did you mean 'balance'? (it has light, bsdf, average, "
+            "balance, power)");
   EXPECT_EQ(error_of("", kScene),
-            "there is no estimator '' for this scene; it has light, bsdf, average, balance, power");
+            "there is no estimator '' for this scene (it has light, bsdf, average, balance, power)");
   EXPECT_EQ(error_of("light*3", kScene).find("there is no estimator 'light*3'"), 0u);
   EXPECT_EQ(error_of("balance@light+bsfd", kScene),
-            "estimator 'balance@light+bsfd': there is no technique 'bsfd' here; did you mean 'bsdf'?; this scene has "
-            "light, bsdf");
+            "estimator 'balance@light+bsfd': there is no technique 'bsfd' here; did you mean 'bsdf'? (this scene has "
+            "light, bsdf)");
   EXPECT_THAT(error_of("balance@", kScene), HasSubstr("there is no technique ''"));
   EXPECT_THAT(error_of("balance@light+", kScene), HasSubstr("there is no technique ''"));
   EXPECT_THAT(error_of("balance@+bsdf", kScene), HasSubstr("there is no technique ''"));
@@ -114,7 +114,7 @@ TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
   EXPECT_EQ(error_of("average:", kScene), "estimator 'average:': 'average' takes no parameter");
   // A scene of one technique: the default pair is not there.
   EXPECT_EQ(error_of("balance", kIntegrand),
-            "estimator 'balance': there is no technique 'light' here; this scene has mean");
+            "estimator 'balance': there is no technique 'light' here (this scene has mean)");
   EXPECT_EQ(error_of("light", kIntegrand).find("there is no estimator 'light' for this scene"), 0u);
 }
 
