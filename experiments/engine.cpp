@@ -196,7 +196,8 @@ void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue
     plan.skips.push_back(fmt::format("{} of {} units of work are in {}: not measured again", journal.size(),
                                      plan.units.size(), (out / "journal").string()));
   } catch (const Error& error) {
-    plan.skips.push_back(fmt::format("nothing that is in {}: {}", out.string(), error.what()));
+    // Another experiment's journal leaves nothing to skip; a folder that is busy cannot be looked into.
+    if (error.code() != ExitCode::kBadInput) plan.skips.push_back(error.what());
   }
 }
 
