@@ -202,17 +202,22 @@ void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue
 }
 
 std::string describe_plan(const Spec& spec, const Plan& plan) {
-  std::string text =
-      fmt::format("{}: {} cells from {} passes in {} units of work, {:.3g} integrand evaluations\n", spec.name,
-                  plan.cells.size(), plan.passes.size(), plan.units.size(), plan.evaluations());
+  const auto count = [](auto n, const char* one, const char* many) {
+    return fmt::format("{} {}", n, n == 1 ? one : many);
+  };
+  std::string text = fmt::format("{}: {} from {} in {} of work, {:.3g} integrand evaluations\n", spec.name,
+                                 count(plan.cells.size(), "cell", "cells"), count(plan.passes.size(), "pass", "passes"),
+                                 count(plan.units.size(), "unit", "units"), plan.evaluations());
   for (const Pass& pass : plan.passes) {
     const PlannedScene& scene = plan.scenes[pass.scene];
     std::vector<std::string> names;
     for (const std::size_t e : pass.estimators) names.push_back(scene.estimators[e].name);
-    text += fmt::format("  {}, {}, {}: {} at N = {}{}, {} pixels x {} replicates, {} dimensions\n", scene.name,
-                        to_string(pass.precision), pass.sampler, fmt::join(names, " + "), pass.samples.front(),
-                        pass.samples.size() > 1 ? fmt::format(" ... {}", pass.samples.back()) : "", scene.pixels.size(),
-                        pass.replicates, pass.allocation.layout(scene.source->techniques()).dims());
+    const int dims = pass.allocation.layout(scene.source->techniques()).dims();
+    text += fmt::format("  {}, {}, {}: {} at N = {}{}, {} x {}, {}\n", scene.name, to_string(pass.precision),
+                        pass.sampler, fmt::join(names, " + "), pass.samples.front(),
+                        pass.samples.size() > 1 ? fmt::format(" … {}", pass.samples.back()) : "",
+                        count(scene.pixels.size(), "pixel", "pixels"),
+                        count(pass.replicates, "replicate", "replicates"), count(dims, "dimension", "dimensions"));
   }
   text += "skipped:\n";
   for (const auto& skip : plan.skips) text += "  " + skip + "\n";

@@ -182,7 +182,7 @@ TEST(Plan, IsDescribedInLines) {
                              {"replicates", "8"}});
   const Plan plan = make_plan(spec, Catalogue::built_in());
   const std::string text = describe_plan(spec, plan);
-  EXPECT_THAT(text, HasSubstr("look: 3 cells from 1 passes in 1 units of work, 128 integrand evaluations\n"));
+  EXPECT_THAT(text, HasSubstr("look: 3 cells from 1 pass in 1 unit of work, 128 integrand evaluations\n"));
   for (const auto& skip : plan.skips) EXPECT_THAT(text, HasSubstr("  " + skip + "\n"));
 }
 
