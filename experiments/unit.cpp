@@ -78,19 +78,22 @@ CellPart decode_part(std::size_t index, const ReadSlice& read) {
 
 /// A pass's evaluator and buffers.
 struct UnitEvaluator::Worker {
+  const Pass* pass;
   std::variant<std::unique_ptr<PassEvaluator<float>>, std::unique_ptr<PassEvaluator<double>>> evaluator;
   std::vector<double> estimates;  ///< [cell][channel][replicate of the chunk]
 
-  Worker(const Plan& plan, const Pass& pass, const SamplerCatalogue& samplers) {
-    const IntegralSource& source = *plan.scenes[pass.scene].source;
+  Worker(const Plan& plan, const Pass& planned, const SamplerCatalogue& samplers) : pass(&planned) {
+    const IntegralSource& source = *plan.scenes[planned.scene].source;
     std::vector<Heuristic> heuristics;
-    for (const std::size_t e : pass.estimators) heuristics.push_back(plan.scenes[pass.scene].estimators[e].heuristic);
+    for (const std::size_t e : planned.estimators)
+      heuristics.push_back(plan.scenes[planned.scene].estimators[e].heuristic);
     const auto make = [&]<class T>(T) {
-      evaluator = std::make_unique<PassEvaluator<T>>(samplers.make(pass.sampler), source.techniques(), pass.allocation,
-                                                     heuristics, rounds_of(pass), source.channels());
+      evaluator =
+          std::make_unique<PassEvaluator<T>>(samplers.make(planned.sampler), source.techniques(), planned.allocation,
+                                             heuristics, rounds_of(planned), source.channels());
     };
-    pass.precision == Precision::kF32 ? make(float{}) : make(double{});
-    estimates.resize(heuristics.size() * pass.samples.size() * static_cast<std::size_t>(source.channels() * kChunk));
+    planned.precision == Precision::kF32 ? make(float{}) : make(double{});
+    estimates.resize(heuristics.size() * planned.samples.size() * static_cast<std::size_t>(source.channels() * kChunk));
   }
 
   void run(const Integral& integral, StreamKey key, std::uint32_t pixel, std::uint32_t replicate) {
@@ -110,13 +113,11 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
   const PlannedScene& scene = plan_.scenes[pass.scene];
   const Reference& reference = references_[pass.scene];
   const auto channels = static_cast<std::size_t>(scene.source->channels());
-  // Units run in the order of passes, so one pass's buffers are enough.
-  auto& worker = workers_[unit.pass];
-  if (!worker) {
-    workers_.clear();
-    workers_[unit.pass] = std::make_unique<Worker>(plan_, pass, samplers_);
+  if (!worker_ || worker_->pass != &pass) {
+    worker_.reset();
+    worker_ = std::make_unique<Worker>(plan_, pass, samplers_);
   }
-  Worker& w = *workers_[unit.pass];
+  Worker& w = *worker_;
 
   const std::size_t ns = pass.samples.size(), cells = pass.estimators.size() * ns;
   std::vector<CellPart> parts(cells);

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -64,7 +64,7 @@ class UnitEvaluator {
   const Plan& plan_;
   std::span<const Reference> references_;
   const SamplerCatalogue& samplers_;
-  std::map<std::size_t, std::unique_ptr<Worker>> workers_;
+  std::unique_ptr<Worker> worker_;  ///< of the pass last worked on: units come in the order of passes
 };
 
 }  // namespace halfslope
