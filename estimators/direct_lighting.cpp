@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <numbers>
 #include <variant>
 
 #include "core/error.h"
@@ -23,15 +22,6 @@ void copy(const Vec3& from, T (&to)[3]) {
 template <class T>
 void copy(const Rgb& from, T (&to)[3]) {
   for (int i = 0; i < 3; ++i) to[i] = static_cast<T>(from[i]);
-}
-
-double scaled_area(const Primitive& primitive, double scale) {
-  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
-    const double radius = scale * sphere->radius;
-    return 4 * std::numbers::pi * radius * radius;
-  }
-  const auto& r = std::get<Rectangle>(primitive.shape);
-  return 4 * (scale * r.half_u).norm() * (scale * r.half_v).norm();
 }
 
 /// Rows: a local frame whose z axis is n (J. R. Frisvad's problem, solved by Duff and others 2017).
@@ -66,7 +56,7 @@ LocalShape<T> local_shape(const Primitive& primitive, const Receiver& receiver, 
     shape.inside = inside_sphere(receiver, *sphere, own);
     return shape;
   }
-  const auto& r = std::get<Rectangle>(primitive.shape);
+  const auto& r = std::get<Flat>(primitive.shape);
   const Vec3 center = scale * (r.center - receiver.position), half_u = scale * r.half_u, half_v = scale * r.half_v;
   shape.is_sphere = false;
   copy(Vec3(to_local * center), shape.center);
@@ -109,7 +99,7 @@ struct Local {
       light.reaches = light_reaches(receiver, primitive, own);
       light.shape =
           local_shape<T>(primitive, receiver, to_local, scale, own, light_of[static_cast<std::size_t>(index)]);
-      light.pdf_area = static_cast<T>(1 / (scaled_area(primitive, scale) * static_cast<double>(light_indices.size())));
+      light.pdf_area = static_cast<T>(1 / (area(primitive, scale) * static_cast<double>(light_indices.size())));
       if (light.reaches) copy(primitive.radiance, light.radiance);
       lights.push_back(light);
     }
@@ -205,7 +195,7 @@ Hit DirectLighting::hit(int pixel) const {
 
 bool DirectLighting::sees_constant(const Hit& hit) const {
   if (hit.primitive < 0 || !hit.front) return true;
-  return (scene_.primitives[static_cast<std::size_t>(hit.primitive)].bsdf.reflectance == 0).all();
+  return is_black(scene_.primitives[static_cast<std::size_t>(hit.primitive)].bsdf);
 }
 
 PixelIntegral DirectLighting::pixel(int index) const {
@@ -290,7 +280,7 @@ std::string DirectLighting::fingerprint() const {
       add(s->center);
       text += fmt::format(" {} {}", format_number(s->radius), s->flip_normals);
     } else {
-      const auto& r = std::get<Rectangle>(p.shape);
+      const auto& r = std::get<Flat>(p.shape);
       add(r.center), add(r.half_u), add(r.half_v), add(r.normal);
     }
     add(p.radiance);

@@ -17,14 +17,14 @@ constexpr double kSlack = 1e-9;
 
 Ball bounding_ball(const Primitive& primitive) {
   if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) return {sphere->center, sphere->radius};
-  const auto& r = std::get<Rectangle>(primitive.shape);
+  const auto& r = std::get<Flat>(primitive.shape);
   return {r.center, std::sqrt(r.half_u.squaredNorm() + r.half_v.squaredNorm())};
 }
 
 /// How far the primitive reaches along the unit vector n: the largest n · (p − from) of its points p.
 double reach(const Primitive& primitive, const Vec3& n, const Vec3& from) {
   if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) return n.dot(sphere->center - from) + sphere->radius;
-  const auto& r = std::get<Rectangle>(primitive.shape);
+  const auto& r = std::get<Flat>(primitive.shape);
   return n.dot(r.center - from) + std::abs(n.dot(r.half_u)) + std::abs(n.dot(r.half_v));
 }
 
@@ -45,7 +45,7 @@ bool inside_sphere(const Receiver& receiver, const Sphere& sphere, bool own) {
 
 bool light_reaches(const Receiver& receiver, const Primitive& light, bool own) {
   if (!light.emits || !above_horizon(receiver, light)) return false;
-  if (const auto* r = std::get_if<Rectangle>(&light.shape)) {
+  if (const auto* r = std::get_if<Flat>(&light.shape)) {
     const Vec3 offset = receiver.position - r->center;
     return r->normal.dot(offset) > kSlack * offset.norm();
   }
@@ -60,7 +60,7 @@ bool can_occlude(const Receiver& receiver, const Primitive& light, const Primiti
   const Ball target = bounding_ball(light), ball = bounding_ball(shape);
   const Vec3 to_target = target.center - receiver.position, to_ball = ball.center - receiver.position;
   const double target_distance = to_target.norm(), ball_distance = to_ball.norm();
-  if (const auto* r = std::get_if<Rectangle>(&shape.shape)) {
+  if (const auto* r = std::get_if<Flat>(&shape.shape)) {
     // A segment crosses the plane only if its ends are on different sides of it; an end in the plane is on neither.
     const double slack = kSlack * (ball_distance + target_distance + ball.radius);
     const double here = r->normal.dot(receiver.position - r->center);

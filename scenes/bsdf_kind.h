@@ -4,6 +4,6 @@
 
 namespace halfslope {
 
-enum class BsdfKind : std::uint8_t { kDiffuse, kRoughConductor };
+enum class BsdfKind : std::uint8_t { kDiffuse, kRoughConductor, kPhong };
 
 }  // namespace halfslope

@@ -35,14 +35,16 @@ struct PlanePoint {
   double distance, a, b;  ///< center + a·half_u + b·half_v
 };
 
-PlanePoint hit_rectangle(const Rectangle& rectangle, const Ray& ray) {
-  const Vec3 to_center = rectangle.center - ray.origin;
-  const double t = rectangle.normal.dot(to_center) / rectangle.normal.dot(ray.direction);
+PlanePoint hit_flat(const Flat& flat, const Ray& ray) {
+  const Vec3 to_center = flat.center - ray.origin;
+  const double t = flat.normal.dot(to_center) / flat.normal.dot(ray.direction);
   if (!(t > 0) || !std::isfinite(t)) return {kNoHit, 0, 0};
   const Vec3 local = t * ray.direction - to_center;
-  const double a = local.dot(rectangle.half_u) / rectangle.half_u.squaredNorm();
-  const double b = local.dot(rectangle.half_v) / rectangle.half_v.squaredNorm();
-  return {std::abs(a) <= 1 && std::abs(b) <= 1 ? t : kNoHit, a, b};
+  const double a = local.dot(flat.half_u) / flat.half_u.squaredNorm();
+  const double b = local.dot(flat.half_v) / flat.half_v.squaredNorm();
+  const bool disk = flat.outline == Flat::Outline::kDisk;
+  const bool inside = disk ? a * a + b * b <= 1 : std::abs(a) <= 1 && std::abs(b) <= 1;
+  return {inside ? t : kNoHit, a, b};
 }
 
 }  // namespace
@@ -80,12 +82,12 @@ Hit first_hit(const Scene& scene, const Ray& ray) {
       hit.position = sphere->center + sphere->radius * outward;
       hit.normal = sphere->flip_normals ? Vec3(-outward) : outward;
     } else {
-      const auto& rectangle = std::get<Rectangle>(scene.primitives[i].shape);
-      const PlanePoint point = hit_rectangle(rectangle, ray);
+      const auto& flat = std::get<Flat>(scene.primitives[i].shape);
+      const PlanePoint point = hit_flat(flat, ray);
       if (!(point.distance < nearest)) continue;
       nearest = point.distance;
-      hit.position = rectangle.center + point.a * rectangle.half_u + point.b * rectangle.half_v;
-      hit.normal = rectangle.normal;
+      hit.position = flat.center + point.a * flat.half_u + point.b * flat.half_v;
+      hit.normal = flat.normal;
     }
     hit.primitive = static_cast<int>(i);
     hit.distance = nearest;
@@ -94,12 +96,27 @@ Hit first_hit(const Scene& scene, const Ray& ray) {
   return hit;
 }
 
+double area(const Primitive& primitive, double scale) {
+  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
+    const double radius = scale * sphere->radius;
+    return 4 * std::numbers::pi * radius * radius;
+  }
+  const auto& flat = std::get<Flat>(primitive.shape);
+  const double square = (scale * flat.half_u).norm() * (scale * flat.half_v).norm();
+  return (flat.outline == Flat::Outline::kDisk ? std::numbers::pi : 4) * square;
+}
+
+bool is_black(const Bsdf& bsdf) {
+  return (bsdf.reflectance == 0).all() && (bsdf.kind != BsdfKind::kPhong || (bsdf.specular == 0).all());
+}
+
 bool is_grey(const Scene& scene) {
   const auto grey = [](const Rgb& colour) { return colour[0] == colour[1] && colour[1] == colour[2]; };
   for (const Primitive& primitive : scene.primitives) {
     const Bsdf& bsdf = primitive.bsdf;
     if (primitive.emits && !grey(primitive.radiance)) return false;
     if (!grey(bsdf.reflectance)) return false;
+    if (bsdf.kind == BsdfKind::kPhong && !grey(bsdf.specular)) return false;
     const bool has_index = bsdf.kind == BsdfKind::kRoughConductor && !bsdf.unit_fresnel;
     if (has_index && !(grey(bsdf.eta) && grey(bsdf.k))) return false;
   }

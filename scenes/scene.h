@@ -21,10 +21,12 @@ struct Sphere {
   bool flip_normals = false;
 };
 
-/// A parallelogram { center + a·half_u + b·half_v : a, b ∈ [−1, 1] } with half_u ⟂ half_v; `normal` is unit length and
-/// points to the front.
-struct Rectangle {
+/// A flat shape { center + a·half_u + b·half_v } with half_u ⟂ half_v: of all a, b ∈ [−1, 1], a rectangle; of those
+/// with a² + b² ≤ 1, a disk (an ellipse where the half axes differ). `normal` is unit length and points to the front.
+struct Flat {
+  enum class Outline : std::uint8_t { kRectangle, kDisk };
   Vec3 center = Vec3::Zero(), half_u = Vec3::UnitX(), half_v = Vec3::UnitY(), normal = Vec3::UnitZ();
+  Outline outline = Outline::kRectangle;
 };
 
 /// Reflection at a surface, one-sided: it reflects only where both directions are on the front.
@@ -32,12 +34,14 @@ struct Bsdf {
   BsdfKind kind = BsdfKind::kDiffuse;
   Rgb reflectance = Rgb::Constant(0.5);    ///< diffuse albedo, or the conductor's specular_reflectance
   double alpha = 0.1;                      ///< GGX roughness, isotropic, in (0, 1]
+  Rgb specular = Rgb::Zero();              ///< of the Phong lobe; `reflectance` is then the diffuse part
+  double exponent = 30;                    ///< of the Phong lobe, ≥ 0
   bool unit_fresnel = true;                ///< material "none": F = 1
   Rgb eta = Rgb::Zero(), k = Rgb::Zero();  ///< complex index of refraction per channel, where F is not 1
 };
 
 struct Primitive {
-  std::variant<Sphere, Rectangle> shape;
+  std::variant<Sphere, Flat> shape;
   Bsdf bsdf;
   bool emits = false;
   Rgb radiance = Rgb::Zero();  ///< emitted from the front, where `emits`
@@ -80,6 +84,12 @@ struct Hit {
 /// The nearest intersection with distance > 0, in double precision by the stable forms (the sphere's discriminant from
 /// the closest approach; the hit point projected back onto the shape).
 Hit first_hit(const Scene& scene, const Ray& ray);
+
+/// Of one side, with every length multiplied by `scale` first: the squares of the file's may leave binary64.
+double area(const Primitive& primitive, double scale = 1);
+
+/// Whether nothing is reflected.
+bool is_black(const Bsdf& bsdf);
 
 /// Whether two channels can ever differ: any colour in a radiance, reflectance, eta or k.
 bool is_grey(const Scene& scene);

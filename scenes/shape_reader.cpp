@@ -35,8 +35,8 @@ Sphere read_sphere(Properties& properties) {
   return sphere;
 }
 
-Rectangle read_rectangle(Properties& properties) {
-  Rectangle rectangle;
+Flat read_rectangle(Properties& properties) {
+  Flat rectangle;
   const Eigen::Matrix4d to_world = properties.transform("to_world").value_or(Eigen::Matrix4d::Identity());
   const bool flip_normals = properties.boolean("flip_normals").value_or(false);
   properties.finish();

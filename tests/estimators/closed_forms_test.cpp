@@ -50,7 +50,7 @@ double corner_factor(double a, double b, double c) {
 }
 
 /// Lambert's formula for a rectangle above the horizon that faces the origin, where the normal is +z: E/(π L).
-double lambert_factor(const Rectangle& r) {
+double lambert_factor(const Flat& r) {
   const std::array<Vec3, 4> v = {r.center - r.half_u - r.half_v, r.center + r.half_u - r.half_v,
                                  r.center + r.half_u + r.half_v, r.center - r.half_u + r.half_v};
   double sum = 0;
@@ -76,7 +76,7 @@ TEST(ClosedForms, RectangleOverACorner) {
 TEST(ClosedForms, TiltedRectangle) {
   const Vec3 u = Vec3(1, 0.2, 0.3).normalized() * 0.4, v = u.cross(Vec3(0.1, 0.2, 1)).normalized() * 0.7;
   const Primitive light = emitting(rectangle({0.5, -0.6, 1.1}, u, v), grey(2));
-  const auto& r = std::get<Rectangle>(light.shape);
+  const auto& r = std::get<Flat>(light.shape);
   ASSERT_LT(r.normal.dot(r.center), 0) << "the test's light must face the origin";
   expect_radiance(floor_under({light}, diffuse(grey(0.5))), grey(lambert_factor(r)), "tilted rectangle");
 }

@@ -142,10 +142,10 @@ TEST(DirectLighting, TheFingerprintKnowsAllThatAnIntegralDependsOn) {
     scenes.push_back(base());
     how(scenes.back());
   };
-  change([](Scene& s) { std::get<Rectangle>(s.primitives[0].shape).center.x() += 1e-15; });
-  change([](Scene& s) { std::get<Rectangle>(s.primitives[0].shape).half_u *= 2; });
-  change([](Scene& s) { std::get<Rectangle>(s.primitives[0].shape).half_v *= 2; });
-  change([](Scene& s) { std::get<Rectangle>(s.primitives[0].shape).normal *= -1; });
+  change([](Scene& s) { std::get<Flat>(s.primitives[0].shape).center.x() += 1e-15; });
+  change([](Scene& s) { std::get<Flat>(s.primitives[0].shape).half_u *= 2; });
+  change([](Scene& s) { std::get<Flat>(s.primitives[0].shape).half_v *= 2; });
+  change([](Scene& s) { std::get<Flat>(s.primitives[0].shape).normal *= -1; });
   change([](Scene& s) { std::get<Sphere>(s.primitives[1].shape).radius = 0.25; });
   change([](Scene& s) { std::get<Sphere>(s.primitives[1].shape).center.y() = 1; });
   change([](Scene& s) { std::get<Sphere>(s.primitives[1].shape).flip_normals = true; });

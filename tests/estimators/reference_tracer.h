@@ -56,7 +56,7 @@ class ReferenceTracer {
       term.point = s->center + s->radius * outward;
       normal = s->flip_normals ? Vec3(-outward) : outward;
     } else {
-      const auto& r = std::get<Rectangle>(light.shape);
+      const auto& r = std::get<Flat>(light.shape);
       if (term.light == receiver_) return term;  // lies in its own plane
       term.point = r.center + (2 * u1 - 1) * r.half_u + (2 * u2 - 1) * r.half_v;
       normal = r.normal;
@@ -122,7 +122,7 @@ class ReferenceTracer {
 
   static double area(const Primitive& primitive) {
     if (const auto* s = std::get_if<Sphere>(&primitive.shape)) return 4 * std::numbers::pi * s->radius * s->radius;
-    const auto& r = std::get<Rectangle>(primitive.shape);
+    const auto& r = std::get<Flat>(primitive.shape);
     return (2 * r.half_u).cross(2 * r.half_v).norm();
   }
 

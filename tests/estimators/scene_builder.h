@@ -25,7 +25,7 @@ inline Primitive sphere(const Vec3& center, double radius, bool flip_normals = f
 /// A shape that neither reflects nor emits; its front is on the side of half_u × half_v.
 inline Primitive rectangle(const Vec3& center, const Vec3& half_u, const Vec3& half_v) {
   Primitive primitive;
-  primitive.shape = Rectangle{center, half_u, half_v, half_u.cross(half_v).normalized()};
+  primitive.shape = Flat{center, half_u, half_v, half_u.cross(half_v).normalized()};
   primitive.bsdf.reflectance = Rgb::Zero();
   return primitive;
 }
@@ -78,7 +78,7 @@ inline Scene moved(Scene scene, const Eigen::Matrix3d& turn, double scale, const
       point(s->center);
       s->radius *= scale;
     } else {
-      auto& r = std::get<Rectangle>(primitive.shape);
+      auto& r = std::get<Flat>(primitive.shape);
       point(r.center), direction(r.normal);
       r.half_u = scale * (turn * r.half_u);
       r.half_v = scale * (turn * r.half_v);

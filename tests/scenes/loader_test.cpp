@@ -18,8 +18,8 @@ Scene load(const std::string& body) {
 
 Primitive shape(const std::string& element) { return load(element).primitives.at(0); }
 
-Rectangle rectangle(const std::string& steps) {
-  return std::get<Rectangle>(
+Flat rectangle(const std::string& steps) {
+  return std::get<Flat>(
       shape("<shape type='rectangle'><transform name='to_world'>" + steps + "</transform></shape>").shape);
 }
 
@@ -106,20 +106,20 @@ TEST(Loader, SphereByTransform) {
 }
 
 TEST(Loader, RectangleDefaultFacesPlusZ) {
-  const auto plain = std::get<Rectangle>(shape("<shape type='rectangle'/>").shape);
+  const auto plain = std::get<Flat>(shape("<shape type='rectangle'/>").shape);
   expect_vector(plain.center, Vec3::Zero(), 0);
   expect_vector(plain.half_u, Vec3::UnitX(), 0);
   expect_vector(plain.half_v, Vec3::UnitY(), 0);
   expect_vector(plain.normal, Vec3::UnitZ(), 0);
   const auto flipped =
-      std::get<Rectangle>(shape("<shape type='rectangle'><boolean name='flip_normals' value='true'/></shape>").shape);
+      std::get<Flat>(shape("<shape type='rectangle'><boolean name='flip_normals' value='true'/></shape>").shape);
   expect_vector(flipped.half_u, Vec3::UnitX(), 0);
   expect_vector(flipped.normal, -Vec3::UnitZ(), 0);
 }
 
 TEST(Loader, RotatedRectangle) {
   // Laid flat as a floor: −90° about x takes +z to +y, exactly, for it is a whole quarter turn.
-  const Rectangle floor = rectangle("<scale x='3' y='2'/><rotate x='1' angle='-90'/><translate y='-1'/>");
+  const Flat floor = rectangle("<scale x='3' y='2'/><rotate x='1' angle='-90'/><translate y='-1'/>");
   expect_vector(floor.normal, Vec3::UnitY(), 0);
   expect_vector(floor.half_u, Vec3(3, 0, 0), 0);
   expect_vector(floor.half_v, Vec3(0, 0, -2), 0);
@@ -127,7 +127,7 @@ TEST(Loader, RotatedRectangle) {
   // 30° about y takes +z to (sin 30°, 0, cos 30°).
   expect_vector(rectangle("<rotate y='1' angle='30'/>").normal, Vec3(0.5, 0, std::sqrt(0.75)));
   // A third of a turn about the diagonal permutes the axes: x → y → z → x.
-  const Rectangle turned = rectangle("<rotate value='0.577350269189626' angle='120'/>");
+  const Flat turned = rectangle("<rotate value='0.577350269189626' angle='120'/>");
   expect_vector(turned.half_u, Vec3::UnitY());
   expect_vector(turned.half_v, Vec3::UnitZ());
   expect_vector(turned.normal, Vec3::UnitX());
@@ -143,12 +143,12 @@ TEST(Loader, MirroredRectangleKeepsItsFrontByTheInverseTranspose) {
 
 TEST(Loader, LookatAndMatrixInTransforms) {
   // As in Mitsuba: +z to the target, +x to up × forward.
-  const Rectangle looking = rectangle("<lookat origin='1, 2, 3' target='5, 2, 3' up='0, 1, 0'/>");
+  const Flat looking = rectangle("<lookat origin='1, 2, 3' target='5, 2, 3' up='0, 1, 0'/>");
   expect_vector(looking.center, Vec3(1, 2, 3), 0);
   expect_vector(looking.normal, Vec3::UnitX());
   expect_vector(looking.half_u, -Vec3::UnitZ());
   expect_vector(looking.half_v, Vec3::UnitY());
-  const Rectangle nine = rectangle("<matrix value='0 0 1  1 0 0  0 1 0'/>");
+  const Flat nine = rectangle("<matrix value='0 0 1  1 0 0  0 1 0'/>");
   expect_vector(nine.half_u, Vec3::UnitY(), 0);
   expect_vector(nine.normal, Vec3::UnitX(), 0);
 }

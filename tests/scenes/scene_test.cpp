@@ -12,7 +12,7 @@ void expect_vector(const Vec3& found, const Vec3& expected, double tolerance = 1
   EXPECT_LE((found - expected).norm(), tolerance) << found.transpose() << " is not " << expected.transpose();
 }
 
-Scene scene_of(std::variant<Sphere, Rectangle> shape) {
+Scene scene_of(std::variant<Sphere, Flat> shape) {
   Scene scene;
   scene.primitives.push_back({.shape = shape, .bsdf = {}, .emits = false, .radiance = Rgb::Zero(), .id = "shape1"});
   return scene;
@@ -97,7 +97,7 @@ TEST(FirstHit, SmallDistantSphereKeepsItsDigits) {
 }
 
 TEST(FirstHit, RectangleEdgesAndSides) {
-  Rectangle rectangle;
+  Flat rectangle;
   rectangle.center = Vec3(1, 0, 4);
   rectangle.half_u = Vec3(3, 0, 0);
   rectangle.half_v = Vec3(0, 0.5, 0);

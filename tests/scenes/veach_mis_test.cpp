@@ -109,7 +109,7 @@ TEST(VeachMis, Plates) {
        {0.1, -3.99615, 4.0667, -3.82069, 3.08221, {0, 0.9844866666814627, 0.17545940592177636}}}};
   for (std::size_t i = 0; i < plates.size(); ++i) {
     const Primitive& primitive = find(scene, "plate" + std::to_string(i + 1));
-    const auto& rectangle = std::get<Rectangle>(primitive.shape);
+    const auto& rectangle = std::get<Flat>(primitive.shape);
     expect_vector(rectangle.center - rectangle.half_u - rectangle.half_v, {-4, plates[i].front_y, plates[i].front_z},
                   1e-15);
     expect_vector(rectangle.center + rectangle.half_u + rectangle.half_v, {4, plates[i].back_y, plates[i].back_z},
@@ -129,7 +129,7 @@ TEST(VeachMis, FloorAndWall) {
   for (const auto& [id, center, normal] :
        {std::tuple{"floor", Vec3(0, -4.14615, 0), Vec3(0, 1, 0)}, std::tuple{"wall", Vec3(0, 0, -2), Vec3(0, 0, 1)}}) {
     const Primitive& primitive = find(scene, id);
-    const auto& rectangle = std::get<Rectangle>(primitive.shape);
+    const auto& rectangle = std::get<Flat>(primitive.shape);
     expect_vector(rectangle.center, center, 0);
     expect_vector(rectangle.normal, normal, 0);
     EXPECT_EQ(rectangle.half_u.norm(), 10);
@@ -143,7 +143,7 @@ TEST(VeachMis, FloorAndWall) {
 /// uniform in solid angle, rings and azimuths.
 double reflected_radiance(const Primitive& plate, const Primitive& light, const Vec3& point, const Vec3& eye) {
   const auto& sphere = std::get<Sphere>(light.shape);
-  const Vec3 normal = std::get<Rectangle>(plate.shape).normal;
+  const Vec3 normal = std::get<Flat>(plate.shape).normal;
   const Vec3 to_eye = (eye - point).normalized(), to_light = sphere.center - point;
   const Vec3 axis = to_light.normalized(), u = axis.unitOrthogonal(), v = axis.cross(u);
   const Vec3 tangent = Vec3::UnitX(), bitangent = normal.cross(tangent);
