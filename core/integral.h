@@ -52,12 +52,16 @@ class IntegralSource {
   virtual int width() const { return 1; }
   virtual int height() const { return 1; }
   int pixels() const { return width() * height(); }
+  /// Whether the pixels are an image, which could be of any size.
+  virtual bool takes_resolution() const { return false; }
   /// 1 where every channel is equal.
   virtual int channels() const { return 1; }
   virtual std::span<const Technique> techniques() const = 0;
+  /// The first so many of techniques() draw references, and they suffice to reach all that contributes.
+  virtual std::size_t reference_techniques() const { return techniques().size(); }
   /// Pixel y · width + x, rows from the top.
   virtual PixelIntegral pixel(int index) const = 0;
-  /// The exact value of every pixel, where it is known in closed form.
+  /// The exact value of the pixel, constant part included, where it is known in closed form.
   virtual std::optional<Color> closed_form(int /*pixel*/) const { return std::nullopt; }
   /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
   virtual std::vector<std::string> regions() const { return {}; }

@@ -1,173 +1,67 @@
 #include "estimators/direct_lighting.h"
 
-#include <Eigen/Geometry>
-#include <cmath>
+#include <algorithm>
 #include <variant>
 
 #include "core/error.h"
 #include "core/kernel_library.h"
 #include "core/numbers.h"
 #include "estimators/kernels.h"
-#include "estimators/occlusion.h"
+#include "estimators/local_pixel.h"
+#include "scenes/closed_form.h"
 
 namespace halfslope {
 namespace {
 
-constexpr int kLight = 0, kBsdf = 1;
-
-template <class T>
-void copy(const Vec3& from, T (&to)[3]) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<T>(from[i]);
-}
-template <class T>
-void copy(const Rgb& from, T (&to)[3]) {
-  for (int i = 0; i < 3; ++i) to[i] = static_cast<T>(from[i]);
+/// Whether the technique's first number chooses among several: one light, or one surface, is no choice, and takes no
+/// dimension.
+bool chooses(LightingTechnique technique, const Scene& scene, const Emitters& emitters) {
+  if (technique == LightingTechnique::kLight) return emitters.lights.size() > 1;
+  return technique == LightingTechnique::kSurface && scene.primitives.size() > 1;
 }
 
-/// Rows: a local frame whose z axis is n (J. R. Frisvad's problem, solved by Duff and others 2017).
-Eigen::Matrix3d frame(const Vec3& n) {
-  const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-  Eigen::Matrix3d rows;
-  rows << 1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x(), b, sign + n.y() * n.y() * a, -n.y(), n.x(), n.y(),
-      n.z();
-  return rows;
-}
-
-/// A power of two by which lengths around the receiver become at most about 1. Kernels square them, and binary32 has
-/// no squares of lengths beyond 1e±19.
-double length_scale(const Scene& scene, const Receiver& receiver) {
-  double farthest = 0;
-  for (const Primitive& primitive : scene.primitives) {
-    const Vec3 center = std::visit([](const auto& s) { return s.center; }, primitive.shape);
-    farthest = std::max(farthest, (center - receiver.position).stableNorm());
-  }
-  return farthest > 0 ? std::exp2(-std::ilogb(farthest)) : 1;
-}
-
-/// `own`: the receiver lies on it. `light`: its index among the lights.
-template <class T>
-LocalShape<T> local_shape(const Primitive& primitive, const Receiver& receiver, const Eigen::Matrix3d& to_local,
-                          double scale, bool own, int light) {
-  LocalShape<T> shape;
-  shape.light = light;
-  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
-    copy(Vec3(scale * (to_local * (sphere->center - receiver.position))), shape.center);
-    shape.radius = static_cast<T>(scale * sphere->radius);
-    shape.inside = inside_sphere(receiver, *sphere, own);
-    return shape;
-  }
-  const auto& r = std::get<Flat>(primitive.shape);
-  const Vec3 center = scale * (r.center - receiver.position), half_u = scale * r.half_u, half_v = scale * r.half_v;
-  shape.is_sphere = false;
-  copy(Vec3(to_local * center), shape.center);
-  copy(Vec3(to_local * half_u), shape.u);
-  copy(Vec3(to_local * half_v), shape.v);
-  copy(Vec3(to_local * r.normal), shape.normal);
-  shape.plane = static_cast<T>(r.normal.dot(center));
-  shape.inv_u2 = static_cast<T>(1 / half_u.squaredNorm());
-  shape.inv_v2 = static_cast<T>(1 / half_v.squaredNorm());
-  return shape;
-}
-
-/// One pixel in one precision.
-template <class T>
-struct Local {
-  PixelData<T> data;
-  std::vector<LocalLight<T>> lights;
-  std::vector<LocalShape<T>> occluders;
-
-  Local(const Scene& scene, const std::vector<int>& light_indices, const Receiver& receiver, const Vec3& to_eye) {
-    const Eigen::Matrix3d to_local = frame(receiver.normal);
-    const double scale = length_scale(scene, receiver);
-    copy(Vec3(to_local * to_eye), data.wo);
-    for (int i = 0; i < 9; ++i) data.world_to_local[i] = static_cast<T>(to_local(i / 3, i % 3));
-    const Bsdf& bsdf = scene.primitives[static_cast<std::size_t>(receiver.primitive)].bsdf;
-    data.bsdf = bsdf.kind;
-    data.unit_fresnel = bsdf.unit_fresnel;
-    data.alpha = static_cast<T>(bsdf.alpha);
-    copy(bsdf.reflectance, data.reflectance);
-    copy(bsdf.eta, data.eta);
-    copy(bsdf.k, data.k);
-
-    std::vector<int> light_of(scene.primitives.size(), -1);
-    for (std::size_t l = 0; l < light_indices.size(); ++l)
-      light_of[static_cast<std::size_t>(light_indices[l])] = static_cast<int>(l);
-    for (const int index : light_indices) {
-      const Primitive& primitive = scene.primitives[static_cast<std::size_t>(index)];
-      LocalLight<T> light;
-      const bool own = index == receiver.primitive;
-      light.reaches = light_reaches(receiver, primitive, own);
-      light.shape =
-          local_shape<T>(primitive, receiver, to_local, scale, own, light_of[static_cast<std::size_t>(index)]);
-      light.pdf_area = static_cast<T>(1 / (area(primitive, scale) * static_cast<double>(light_indices.size())));
-      if (light.reaches) copy(primitive.radiance, light.radiance);
-      lights.push_back(light);
-    }
-    for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
-      if (blocks_some_light(scene, light_indices, receiver, static_cast<int>(i))) {
-        occluders.push_back(local_shape<T>(scene.primitives[i], receiver, to_local, scale,
-                                           static_cast<int>(i) == receiver.primitive, light_of[i]));
-      }
-    }
-    data.lights = lights.data();
-    data.light_count = static_cast<int>(lights.size());
-    data.occluders = occluders.data();
-    data.occluder_count = static_cast<int>(occluders.size());
-  }
-
-  static bool blocks_some_light(const Scene& scene, const std::vector<int>& light_indices, const Receiver& receiver,
-                                int index) {
-    const Primitive& shape = scene.primitives[static_cast<std::size_t>(index)];
-    if (index == receiver.primitive) {
-      // A rectangle or the outside of a sphere does not shade its own front; the inside of a sphere does.
-      const auto* sphere = std::get_if<Sphere>(&shape.shape);
-      if (!sphere || !inside_sphere(receiver, *sphere, true)) return false;
-    }
-    for (const int light : light_indices) {
-      const Primitive& primitive = scene.primitives[static_cast<std::size_t>(light)];
-      if (light != index && light_reaches(receiver, primitive, light == receiver.primitive) &&
-          can_occlude(receiver, primitive, shape)) {
-        return true;
-      }
-    }
-    return false;
-  }
-};
-
+/// Reflected light at one point. A pixel is sampled in one precision, and what that needs is made when it is first
+/// asked for; an integral belongs to one thread.
 class ReflectedLight final : public Integral {
  public:
-  ReflectedLight(const Scene& scene, const std::vector<int>& lights, const Receiver& receiver, const Vec3& to_eye,
+  ReflectedLight(const Scene& scene, const Emitters& emitters, const Receiver& receiver, const Vec3& to_eye,
                  int channels)
-      : channels_(channels), f32_(scene, lights, receiver, to_eye), f64_(scene, lights, receiver, to_eye) {}
+      : scene_(scene), emitters_(emitters), receiver_(receiver), to_eye_(to_eye), channels_(channels) {}
 
   void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<float>& terms) const override {
-    evaluate(f32_.data, call, points, terms, call.technique == kLight ? kernels_.light_f32 : kernels_.bsdf_f32);
+    evaluate(f32_, call, points, terms, kernels_.lighting_f32);
   }
   void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<double>& terms) const override {
-    evaluate(f64_.data, call, points, terms, call.technique == kLight ? kernels_.light_f64 : kernels_.bsdf_f64);
+    evaluate(f64_, call, points, terms, kernels_.lighting_f64);
   }
 
  private:
   template <class T>
-  void evaluate(const PixelData<T>& pixel, const TechniqueCall& call, const PointBlock& points, TermBlock<T>& terms,
-                void (*kernel)(const LightingCall<T>&)) const {
+  void evaluate(std::optional<LocalPixel<T>>& pixel, const TechniqueCall& call, const PointBlock& points,
+                TermBlock<T>& terms, void (*kernel)(const LightingCall<T>&)) const {
+    if (!pixel) pixel.emplace(scene_, emitters_, receiver_, to_eye_);
+    const auto technique = static_cast<LightingTechnique>(call.technique);
+    const bool choose = chooses(technique, scene_, emitters_);
     const std::uint32_t *high[3], *low[3];
-    const int dims = call.technique == kLight ? (pixel.light_count > 1 ? 3 : 2) : 2;
-    for (int d = 0; d < dims; ++d) {
+    for (int d = 0; d < (choose ? 3 : 2); ++d) {
       high[d] = points.high(call.first_dim + d);
       low[d] = points.low(call.first_dim + d);
     }
     T* values[3];
     for (int c = 0; c < channels_; ++c) values[c] = terms.value(call.slot, c);
-    T* pdfs[2] = {nullptr, nullptr};
+    T* pdfs[kLightingTechniques] = {};
     for (std::size_t k = 0; k < call.set.size(); ++k) pdfs[call.set[k]] = terms.pdf(call.slot, static_cast<int>(k));
-    kernel({&pixel, channels_, high, low, points.stride(), values, pdfs[kLight], pdfs[kBsdf]});
+    kernel({&pixel->data, technique, channels_, choose, high, low, points.stride(), values, pdfs});
   }
 
+  const Scene& scene_;
+  const Emitters& emitters_;
+  Receiver receiver_;
+  Vec3 to_eye_;
   int channels_;
   const EstimatorKernels& kernels_ = kernels<EstimatorKernels>();
-  Local<float> f32_;
-  Local<double> f64_;
+  mutable std::optional<LocalPixel<float>> f32_;
+  mutable std::optional<LocalPixel<double>> f64_;
 };
 
 Scene with_lights(Scene scene) {
@@ -180,13 +74,17 @@ Scene with_lights(Scene scene) {
 }  // namespace
 
 DirectLighting::DirectLighting(Scene scene, int width, int height)
-    : scene_(with_lights(std::move(scene))), width_(width), height_(height), channels_(is_grey(scene_) ? 1 : 3) {
-  for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
-    if (scene_.primitives[i].emits) lights_.push_back(static_cast<int>(i));
+    : scene_(with_lights(std::move(scene))),
+      emitters_(find_emitters(scene_)),
+      width_(width),
+      height_(height),
+      channels_(is_grey(scene_) ? 1 : 3) {
+  // In the order of LightingTechnique.
+  for (const char* name : {"light", "bsdf", "hemisphere", "cosine", "surface"}) {
+    const auto technique = static_cast<LightingTechnique>(techniques_.size());
+    techniques_.push_back({name, {{2}}});
+    if (chooses(technique, scene_, emitters_)) techniques_.back().layout = {{1, 2}};
   }
-  // One light is no choice, and takes no dimension.
-  techniques_ = {{"light", {lights_.size() > 1 ? std::vector<std::uint8_t>{1, 2} : std::vector<std::uint8_t>{2}}},
-                 {"bsdf", {{2}}}};
 }
 
 Hit DirectLighting::hit(int pixel) const {
@@ -195,20 +93,51 @@ Hit DirectLighting::hit(int pixel) const {
 
 bool DirectLighting::sees_constant(const Hit& hit) const {
   if (hit.primitive < 0 || !hit.front) return true;
-  return is_black(scene_.primitives[static_cast<std::size_t>(hit.primitive)].bsdf);
+  if (is_black(scene_.primitives[static_cast<std::size_t>(hit.primitive)].bsdf)) return true;
+  return std::none_of(emitters_.lights.begin(), emitters_.lights.end(), [&](int light) {
+    return light_reaches({hit.position, hit.normal, hit.primitive}, scene_.primitives[static_cast<std::size_t>(light)],
+                         light == hit.primitive);
+  });
+}
+
+Color DirectLighting::emitted(const Hit& hit) const {
+  if (hit.primitive < 0 || !hit.front) return {0, 0, 0};
+  const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(hit.primitive)];
+  if (!primitive.emits) return {0, 0, 0};
+  return {primitive.radiance[0], primitive.radiance[1], primitive.radiance[2]};
+}
+
+// Each light adds ρ L_e · E/(πL), if nothing can come between and that form factor is known.
+std::optional<Color> DirectLighting::closed_form(int pixel) const {
+  const Hit seen = hit(pixel);
+  Color sum = emitted(seen);
+  if (sees_constant(seen)) return sum;
+  const Bsdf& bsdf = scene_.primitives[static_cast<std::size_t>(seen.primitive)].bsdf;
+  if (bsdf.kind != BsdfKind::kDiffuse) return std::nullopt;
+  const Receiver receiver = {seen.position, seen.normal, seen.primitive};
+  for (const int light : emitters_.lights) {
+    const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(light)];
+    if (!light_reaches(receiver, primitive, light == seen.primitive)) continue;
+    for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
+      if (may_shade(scene_, receiver, light, static_cast<int>(i))) return std::nullopt;
+    }
+    const auto factor = form_factor(primitive, seen.position, seen.normal);
+    if (!factor) return std::nullopt;
+    for (int c = 0; c < 3; ++c) {
+      sum[static_cast<std::size_t>(c)] += bsdf.reflectance[c] * primitive.radiance[c] * *factor;
+    }
+  }
+  return sum;
 }
 
 PixelIntegral DirectLighting::pixel(int index) const {
   const Hit seen = hit(index);
   PixelIntegral result;
-  if (seen.primitive < 0) return result;
-  const Primitive& primitive = scene_.primitives[static_cast<std::size_t>(seen.primitive)];
-  if (primitive.emits && seen.front)
-    result.constant = {primitive.radiance[0], primitive.radiance[1], primitive.radiance[2]};
+  result.constant = emitted(seen);
   if (sees_constant(seen)) return result;
   const Receiver receiver = {seen.position, seen.normal, seen.primitive};
   const Ray ray = scene_.sensor.ray(index % width_, index / width_, width_, height_);
-  result.integral = std::make_unique<ReflectedLight>(scene_, lights_, receiver, -ray.direction, channels_);
+  result.integral = std::make_unique<ReflectedLight>(scene_, emitters_, receiver, -ray.direction, channels_);
   return result;
 }
 
@@ -216,7 +145,7 @@ PixelIntegral DirectLighting::pixel(int index) const {
 std::vector<std::string> DirectLighting::regions() const {
   std::vector<std::string> names = {"background"};
   for (const Primitive& shape : scene_.primitives) {
-    for (const int light : lights_)
+    for (const int light : emitters_.lights)
       names.push_back(shape.id + "/" + scene_.primitives[static_cast<std::size_t>(light)].id);
   }
   return names;
@@ -229,42 +158,49 @@ int DirectLighting::region(int pixel) const {
   const Vec3 mirror = d - 2 * d.dot(seen.normal) * seen.normal;
   std::size_t nearest = 0;
   double best = -2;
-  for (std::size_t l = 0; l < lights_.size(); ++l) {
-    const auto& shape = scene_.primitives[static_cast<std::size_t>(lights_[l])].shape;
+  const auto& lights = emitters_.lights;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const auto& shape = scene_.primitives[static_cast<std::size_t>(lights[l])].shape;
     const Vec3 center = std::visit([](const auto& s) { return s.center; }, shape);
     const double cosine = mirror.dot((center - seen.position).normalized());
     if (cosine > best) best = cosine, nearest = l;
   }
-  return static_cast<int>(1 + static_cast<std::size_t>(seen.primitive) * lights_.size() + nearest);
+  return static_cast<int>(1 + static_cast<std::size_t>(seen.primitive) * lights.size() + nearest);
 }
 
 std::vector<std::string> DirectLighting::skips() const {
-  int constant = 0, unshadowed = 0, sampled = 0;
+  int constant = 0, unshadowed = 0, known = 0;
   for (int p = 0; p < pixels(); ++p) {
     const Hit seen = hit(p);
+    known += closed_form(p) ? 1 : 0;
     if (sees_constant(seen)) {
       ++constant;
       continue;
     }
-    ++sampled;
     const Receiver receiver = {seen.position, seen.normal, seen.primitive};
-    bool occluded = false;
-    for (std::size_t i = 0; i < scene_.primitives.size() && !occluded; ++i) {
-      occluded = Local<float>::blocks_some_light(scene_, lights_, receiver, static_cast<int>(i));
-    }
-    unshadowed += occluded ? 0 : 1;
+    const auto shaded = [&](int light) {
+      for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
+        if (may_shade(scene_, receiver, light, static_cast<int>(i))) return true;
+      }
+      return false;
+    };
+    unshadowed += std::none_of(emitters_.lights.begin(), emitters_.lights.end(), shaded) ? 1 : 0;
   }
   std::vector<std::string> lines;
+  if (known == pixels() && constant < pixels()) {
+    lines.push_back("recognised: diffuse receivers under unoccluded polygon, disk or sphere lights, in closed form");
+  }
   if (constant > 0) {
-    lines.push_back(fmt::format("{} of {} pixels see only background or what does not reflect: constant, not sampled",
-                                constant, pixels()));
+    lines.push_back(fmt::format(
+        "{} of {} pixels see only background, what does not reflect or what no light reaches: constant, not sampled",
+        constant, pixels()));
   }
   if (unshadowed > 0) {
     lines.push_back(
         fmt::format("{} of {} sampled pixels have nothing that could come between them and a light: no shadow rays",
-                    unshadowed, sampled));
+                    unshadowed, pixels() - constant));
   }
-  if (lights_.size() == 1) lines.push_back("one light: no light choice, and no dimension for it");
+  if (emitters_.lights.size() == 1) lines.push_back("one light: no light choice, and no dimension for it");
   if (channels_ == 1) lines.push_back("grey scene: one channel");
   return lines;
 }
@@ -281,11 +217,13 @@ std::string DirectLighting::fingerprint() const {
       text += fmt::format(" {} {}", format_number(s->radius), s->flip_normals);
     } else {
       const auto& r = std::get<Flat>(p.shape);
+      if (r.outline == Flat::Outline::kDisk) text += " disk";
       add(r.center), add(r.half_u), add(r.half_v), add(r.normal);
     }
     add(p.radiance);
     text += fmt::format(" {} {} {}", static_cast<int>(p.bsdf.kind), format_number(p.bsdf.alpha), p.bsdf.unit_fresnel);
     add(p.bsdf.reflectance), add(p.bsdf.eta), add(p.bsdf.k);
+    if (p.bsdf.kind == BsdfKind::kPhong) add(p.bsdf.specular), text += ' ' + format_number(p.bsdf.exponent);
   }
   for (int pixel = 0; pixel < pixels(); pixel += std::max(1, pixels() - 1)) {
     const Ray ray = scene_.sensor.ray(pixel % width_, pixel / width_, width_, height_);

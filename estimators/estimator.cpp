@@ -2,10 +2,12 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <string_view>
 
+#include "core/assertion.h"
 #include "core/error.h"
 
 namespace halfslope {
@@ -75,28 +77,11 @@ Allocation parse_allocation(const std::string& name, std::string_view list, std:
   return allocation;
 }
 
-Heuristic parse_heuristic(const std::string& name, std::string_view text, std::span<const Technique> techniques) {
-  const auto colon = text.find(':');
-  const std::string kind(text.substr(0, colon));
-  const bool has_parameter = colon != std::string_view::npos;
-  if (kind == "power") {
-    if (!has_parameter) return {HeuristicKind::kPower, 2};
-    const auto beta = parse_number<double>(text.substr(colon + 1));
-    if (!beta || !std::isfinite(*beta) || *beta < 0) {
-      fail(ExitCode::kBadInput,
-           "estimator '{}': the power heuristic's exponent is a number that is at least 0, found '{}'", name,
-           text.substr(colon + 1));
-    }
-    return {HeuristicKind::kPower, *beta};
-  }
-  if (kind == "average" || kind == "balance") {
-    if (has_parameter) fail(ExitCode::kBadInput, "estimator '{}': '{}' takes no parameter", name, kind);
-    return {kind == "average" ? HeuristicKind::kAverage : HeuristicKind::kBalance, 0};
-  }
-  auto allowed = names_of(techniques);
-  for (const char* heuristic : {"average", "balance", "power"}) allowed.emplace_back(heuristic);
-  fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{} (it has {})", kind,
-       did_you_mean(kind, allowed), fmt::join(allowed, ", "));
+// What a heuristic combines where its name does not say: light+bsdf, or whatever a scene without those two has.
+std::string default_techniques(std::span<const Technique> techniques) {
+  const bool usual = find(techniques, "light") && find(techniques, "bsdf");
+  if (usual || techniques.size() == 1) return "light+bsdf";
+  return fmt::format("{}", fmt::join(names_of(techniques), "+"));
 }
 
 }  // namespace
@@ -111,32 +96,109 @@ Layout Allocation::layout(std::span<const Technique> catalogue) const {
   return layout;
 }
 
-// The menu. A new heuristic is a kind in estimators/kernels.h, its weight in heuristics.h, its name here and above.
-std::vector<EstimatorInfo> estimator_catalogue() {
-  return {
+// The menu. To add a heuristic: its kind in estimators/kernels.h, its weight in heuristics.h, its line here (an
+// embedder calls add() with a weight function instead, and touches nothing of ours).
+EstimatorCatalogue EstimatorCatalogue::built_in() {
+  EstimatorCatalogue catalogue;
+  catalogue.entries_ = {
+      {{"average", "the plain average of the techniques' estimators, w = 1/n", "Veach & Guibas (1995)"},
+       "average",
+       {HeuristicKind::kAverage},
+       std::nullopt},
+      {{"balance", "balance heuristic, w_i = c_i p_i / sum c_k p_k", "Veach & Guibas (1995); Veach (1997), eq. 9.8"},
+       "balance",
+       {HeuristicKind::kBalance},
+       std::nullopt},
+      {{"power[:B]", "power heuristic with exponent B (default 2)", "Veach & Guibas (1995); Veach (1997), eq. 9.9"},
+       "power",
+       {HeuristicKind::kPower, 2},
+       Parameter{"the power heuristic's exponent", 0, std::numeric_limits<double>::max(), 2}},
+      {{"cutoff[:A]", "balance heuristic without techniques whose c_i p_i is below A times the largest (default 0.1)",
+        "Veach & Guibas (1995); Veach (1997), eq. 9.10"},
+       "cutoff",
+       {HeuristicKind::kCutoff, 0.1},
+       Parameter{"the cutoff heuristic's threshold", 0, 1, 0.1}},
+      {{"maximum", "each sample to the technique with the largest c_i p_i, a tie to the first",
+        "Veach & Guibas (1995); Veach (1997), eq. 9.11"},
+       "maximum",
+       {HeuristicKind::kMaximum},
+       std::nullopt},
+  };
+  return catalogue;
+}
+
+void EstimatorCatalogue::add(EstimatorInfo info, WeightFunction weight) {
+  for (const Entry& entry : entries_) assert_equal(entry.name == info.name, false, "a heuristic of that name");
+  const bool plain = !info.name.empty() && info.name.find_first_of(":@+*,. ") == std::string::npos;
+  assert_equal(plain, true, "a heuristic's name without punctuation");
+  assert_equal(weight != nullptr, true, "a heuristic has a weight function");
+  const std::string name = info.name;
+  entries_.push_back({std::move(info), name, {HeuristicKind::kCustom, 0, weight}, std::nullopt});
+}
+
+std::vector<EstimatorInfo> EstimatorCatalogue::list() const {
+  std::vector<EstimatorInfo> list = {
       {"mean", "the plain mean of an integrand's values (analytic integrands)",
        "the definition of Monte Carlo integration"},
       {"light", "surface form: a light chosen uniformly, then a point uniform on its area",
        "Veach (1997), section 8.2.2"},
       {"bsdf", "directional form: the BSDF's own density (visible normals for GGX)",
        "Veach (1997), section 8.2.2; Dupuy & Benyoub (2023)"},
-      {"average", "the plain average of the techniques' estimators, w = 1/n", "Veach & Guibas (1995)"},
-      {"balance", "balance heuristic, w_i = c_i p_i / sum c_k p_k", "Veach & Guibas (1995); Veach (1997), eq. 9.8"},
-      {"power[:B]", "power heuristic with exponent B (default 2)", "Veach & Guibas (1995); Veach (1997), eq. 9.9"},
+      {"hemisphere", "directional form: uniform over the hemisphere", "Veach (1997), section 8.2.2"},
+      {"cosine", "directional form: by the cosine with the normal", "Veach (1997), section 8.2.2"},
+      {"surface", "surface form: uniform over the area of all surfaces, emitting or not", "Veach (1997), eq. 8.6"},
   };
+  for (const Entry& entry : entries_) list.push_back(entry.info);
+  return list;
 }
 
-Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques) {
-  if (const auto technique = find(techniques, name)) return {name, {HeuristicKind::kSingle, 0}, {{*technique}, {1}}};
+Heuristic EstimatorCatalogue::parse_heuristic(const std::string& name, std::string_view text,
+                                              std::span<const Technique> techniques) const {
+  const auto colon = text.find(':');
+  const std::string_view kind = text.substr(0, colon);
+  for (const Entry& entry : entries_) {
+    if (entry.name != kind) continue;
+    if (colon == std::string_view::npos) return entry.heuristic;
+    if (!entry.parameter) fail(ExitCode::kBadInput, "estimator '{}': '{}' takes no parameter", name, kind);
+    const auto& [meaning, least, most, standard] = *entry.parameter;
+    const auto value = parse_number<double>(text.substr(colon + 1));
+    if (!value || !std::isfinite(*value) || *value < least || *value > most) {
+      const bool bounded = most < std::numeric_limits<double>::max();
+      fail(ExitCode::kBadInput, "estimator '{}': {} is a number that is at least {}{}, found '{}'", name, meaning,
+           least, bounded ? fmt::format(" and at most {}", most) : "", text.substr(colon + 1));
+    }
+    Heuristic heuristic = entry.heuristic;
+    heuristic.parameter = *value;
+    return heuristic;
+  }
+  auto allowed = names_of(techniques);
+  for (const Entry& entry : entries_) allowed.push_back(entry.name);
+  fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{} (it has {})", kind,
+       did_you_mean(kind, allowed), fmt::join(allowed, ", "));
+}
+
+Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Technique> techniques) const {
+  if (const auto technique = find(techniques, name)) return {name, {}, {{*technique}, {1}}};
   const auto at = name.find('@');
   Estimator estimator;
   estimator.name = name;
   estimator.heuristic = parse_heuristic(name, std::string_view(name).substr(0, at), techniques);
-  const std::string_view list = at == std::string::npos ? "light+bsdf" : std::string_view(name).substr(at + 1);
+  const std::string list = at == std::string::npos ? default_techniques(techniques) : name.substr(at + 1);
   estimator.allocation = parse_allocation(name, list, techniques);
   // Every heuristic weights a lone technique by 1.
-  if (estimator.allocation.techniques.size() == 1) estimator.heuristic = {HeuristicKind::kSingle, 0};
+  if (estimator.allocation.techniques.size() == 1) estimator.heuristic = {};
   return estimator;
+}
+
+Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques) {
+  return EstimatorCatalogue::built_in().parse(name, techniques);
+}
+
+std::vector<std::string> default_estimators(std::span<const Technique> techniques) {
+  std::vector<std::string> names = names_of(techniques);
+  if (names.size() == 1) return names;
+  for (const char* heuristic : {"average", "balance", "power", "cutoff", "maximum"}) names.emplace_back(heuristic);
+  return names;
 }
 
 }  // namespace halfslope

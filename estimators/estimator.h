@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/integral.h"
@@ -34,11 +36,45 @@ struct Estimator {
 struct EstimatorInfo {
   std::string name, description, reference;
 };
-std::vector<EstimatorInfo> estimator_catalogue();
 
-/// HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+…], e.g. "balance@light+bsdf", "power:3@light*3+bsdf"; without '@' over
-/// light+bsdf. The name of a technique alone is that technique's own estimator. Throws Error(kBadInput) that says what
-/// is wrong and what the scene offers.
+/// The heuristics that estimators' names begin with. Embedders add their own before they call the command line.
+class EstimatorCatalogue {
+ public:
+  static EstimatorCatalogue built_in();
+
+  /// Adds a heuristic without parameters under info.name, which is letters, digits, '-' and '_'; a name that is taken
+  /// is an assertion failure. `weight` is called from several threads, for each sample of each technique.
+  void add(EstimatorInfo info, WeightFunction weight);
+  /// Techniques first, then heuristics in the order they were added.
+  std::vector<EstimatorInfo> list() const;
+  /// HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+…], e.g. "balance@light+bsdf", "power:3@light*3+bsdf"; without '@' over
+  /// light+bsdf, or over all techniques of a scene that lacks those two. The name of a technique alone is that
+  /// technique's own estimator. Throws Error(kBadInput) that says what is wrong and what the scene offers.
+  Estimator parse(const std::string& name, std::span<const Technique> techniques) const;
+
+ private:
+  /// A heuristic's one parameter: a number from `least` to `most`.
+  struct Parameter {
+    std::string meaning;
+    double least, most, standard;
+  };
+  struct Entry {
+    EstimatorInfo info;
+    std::string name;
+    Heuristic heuristic;
+    std::optional<Parameter> parameter;
+  };
+  Heuristic parse_heuristic(const std::string& name, std::string_view text,
+                            std::span<const Technique> techniques) const;
+
+  std::vector<Entry> entries_;
+};
+
+/// EstimatorCatalogue::parse with the built-in heuristics.
 Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques);
+
+/// The names of estimators that can be made of these techniques: each alone, and where there are several, every
+/// built-in heuristic over what it combines by default.
+std::vector<std::string> default_estimators(std::span<const Technique> techniques);
 
 }  // namespace halfslope

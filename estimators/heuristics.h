@@ -10,10 +10,13 @@
 //   average   w_i = 1/n                             the mean of the techniques' own estimators
 //   balance   w_i = c_i p_i / Σ_k c_k p_k           eq. 9.8
 //   power β   w_i = (c_i p_i)^β / Σ_k (c_k p_k)^β   eq. 9.9
+//   cutoff α  w_i = c_i p_i / Σ_k {c_k p_k : c_k p_k ≥ α q} where c_i p_i ≥ α q, q = max_k c_k p_k, else 0   eq. 9.10
+//   maximum   w_i = 1 for the first i with c_i p_i = q, else 0                                              eq. 9.11
 //
 // Densities span more orders of magnitude than binary32 has, and their powers more still. So every weight is made of
 // the ratios r_k = c_k p_k / max_l c_l p_l, which lie in [0, 1] with one of them 1: sums lie in [1, n], nothing
-// overflows, and what underflows is a weight that is 0 to the last bit. Where every density is 0 each weight is 1/n.
+// overflows, and what underflows is a weight that is 0 to the last bit. Where every density is 0 each weight is 1/n;
+// there all ratios are the number before 1, which says so.
 #pragma once
 
 #include <limits>
@@ -40,24 +43,60 @@ inline F ratio_power(const F& r, double beta) {
   return select(r >= smallest, power, zero * r);
 }
 
-/// The ratios r_k of the scaled densities c_k p_k (in place), and whether all of them were 0 (then each ratio is 1).
+/// The ratio of each technique where every density is 0.
+template <class T>
+inline constexpr T kAllZero = T(1) - std::numeric_limits<T>::epsilon() / 2;
+
+/// Turns the scaled densities c_k p_k into the ratios r_k, in place. An infinite density is the largest.
 template <class F>
 inline void to_ratios(F* scaled, int techniques) {
   using T = scalar_t<F>;
+  const F zero(T(0)), one(T(1)), all_zero(kAllZero<T>);
   if (techniques == 2) {  // the usual case needs one division
     const auto first = scaled[0] >= scaled[1];
     const F larger = select(first, scaled[0], scaled[1]), smaller = select(first, scaled[1], scaled[0]);
-    const F unit(T(1)), ratio = select(larger == F(T(0)), unit, smaller / larger);
+    const F unit = select(larger == zero, all_zero, one);
+    const F ratio = select(smaller == larger, unit, smaller / larger);
     scaled[0] = select(first, unit, ratio);
     scaled[1] = select(first, ratio, unit);
     return;
   }
   F largest = scaled[0];
   for (int k = 1; k < techniques; ++k) largest = max(scaled[k], largest);
-  const auto none = largest == F(T(0));
-  const F one(T(1));
-  const F divisor = select(none, one, largest);
-  for (int k = 0; k < techniques; ++k) scaled[k] = select(none, one, scaled[k] / divisor);
+  const F unit = select(largest == zero, all_zero, one);
+  for (int k = 0; k < techniques; ++k) scaled[k] = select(scaled[k] == largest, unit, scaled[k] / largest);
+}
+
+/// 0; NaN where a ratio is, which selections would lose.
+template <class F>
+inline F nan_of(const F* ratios, int techniques) {
+  F sum = ratios[0];
+  for (int k = 1; k < techniques; ++k) sum = sum + ratios[k];
+  return F(scalar_t<F>(0)) * sum;
+}
+
+/// Where some density is not 0.
+template <class F>
+inline mask_t<F> any_density(const F* ratios, int techniques) {
+  const F one(scalar_t<F>(1));
+  mask_t<F> any = ratios[0] == one;
+  for (int k = 1; k < techniques; ++k) any = any | (ratios[k] == one);
+  return any;
+}
+
+/// A lane at a time, in binary64.
+template <class F>
+inline F custom_weight(WeightFunction function, const F* ratios, int techniques, int i) {
+  using T = scalar_t<F>;
+  constexpr int kMostTechniques = 16;
+  alignas(64) T lanes[kMostTechniques][kWidth<F>];
+  for (int k = 0; k < techniques; ++k) store(lanes[k], ratios[k]);
+  for (int l = 0; l < kWidth<F>; ++l) {
+    double of_lane[kMostTechniques];
+    for (int k = 0; k < techniques; ++k) of_lane[k] = static_cast<double>(lanes[k][l]);
+    lanes[0][l] = static_cast<T>(function(of_lane, techniques, i));
+  }
+  return load<F>(lanes[0]);
 }
 
 /// The weight of technique i from the ratios of all.
@@ -83,6 +122,23 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
       }
       return own / sum;
     }
+    case HeuristicKind::kCutoff: {
+      const F alpha(static_cast<T>(heuristic.parameter)), zero(T(0));
+      F sum = zero;
+      for (int k = 0; k < techniques; ++k) sum = sum + select(ratios[k] >= alpha, ratios[k], zero);
+      const F own = select(ratios[i] >= alpha, ratios[i] / sum, zero);
+      const F equal(T(1) / static_cast<T>(techniques));
+      return select(any_density(ratios, techniques), own, equal) + nan_of(ratios, techniques);
+    }
+    case HeuristicKind::kMaximum: {
+      const F zero(T(0)), one(T(1));
+      F own = select(ratios[i] == one, one, zero);
+      for (int k = 0; k < i; ++k) own = select(ratios[k] == one, zero, own);
+      const F equal(T(1) / static_cast<T>(techniques));
+      return select(any_density(ratios, techniques), own, equal) + nan_of(ratios, techniques);
+    }
+    case HeuristicKind::kCustom:
+      return custom_weight(heuristic.custom, ratios, techniques, i);
   }
   return F(T(0));
 }

@@ -25,9 +25,11 @@ void ratios_in_place(const FoldCall<T>& call, Count<kTechniques> techniques) {
     T* pdfs = call.terms + (static_cast<std::size_t>(q) * rows + static_cast<std::size_t>(call.channels)) * call.stride;
     for (std::size_t p = 0; p < call.count; p += kWidth<F>) {
       F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
-      for (int k = 0; k < techniques; ++k) {
-        ratios[k] = F(call.counts[k]) * load<F>(pdfs + static_cast<std::size_t>(k) * call.stride + p);
-      }
+      const auto scaled = [&](int k) {
+        return F(call.counts[k]) * load<F>(pdfs + static_cast<std::size_t>(k) * call.stride + p);
+      };
+      ratios[0] = scaled(0);
+      for (int k = 1; k < techniques; ++k) ratios[k] = scaled(k);
       to_ratios(ratios, techniques);
       for (int k = 0; k < techniques; ++k) store(pdfs + static_cast<std::size_t>(k) * call.stride + p, ratios[k]);
     }

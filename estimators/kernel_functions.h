@@ -5,10 +5,12 @@
 
 namespace halfslope::kernel {
 
+/// Techniques light and surface.
 template <class T>
-void sample_light(const LightingCall<T>& call);
+void sample_area(const LightingCall<T>& call);
+/// Techniques bsdf, hemisphere and cosine.
 template <class T>
-void sample_bsdf(const LightingCall<T>& call);
+void sample_direction(const LightingCall<T>& call);
 template <class T>
 void fold(const FoldCall<T>& call);
 template <class T>

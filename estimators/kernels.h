@@ -9,24 +9,31 @@
 namespace halfslope {
 
 /// One sample of a technique at each of `count` points (a multiple of kLanes). `high[d]`, `low[d]`: the technique's own
-/// dimensions. values[c] receives f/p of channel c; pdf_light and pdf_bsdf the densities in solid angle, unless null.
+/// dimensions. values[c] receives f/p of channel c; pdfs[t] the density of technique t in solid angle, unless null.
 template <class T>
 struct LightingCall {
   const PixelData<T>* pixel;
+  LightingTechnique technique;
   int channels;  ///< 1 or 3
+  bool choose;   ///< whether the first dimension chooses what an area technique draws its point on
   const std::uint32_t* const* high;
   const std::uint32_t* const* low;
   std::size_t count;
   T* const* values;
-  T* pdf_light;
-  T* pdf_bsdf;
+  T* const* pdfs;  ///< kLightingTechniques of them
 };
 
 /// How the terms of a round are weighted; see estimators/heuristics.h.
-enum class HeuristicKind : std::uint8_t { kSingle, kAverage, kBalance, kPower };
+enum class HeuristicKind : std::uint8_t { kSingle, kAverage, kBalance, kPower, kCutoff, kMaximum, kCustom };
+
+/// The weight in [0, 1] of technique i, from the ratios r_k = c_k p_k / max_l c_l p_l of all `techniques` (where every
+/// density is 0, all ratios are equal).
+using WeightFunction = double (*)(const double* ratios, int techniques, int i);
+
 struct Heuristic {
   HeuristicKind kind = HeuristicKind::kSingle;
-  double parameter = 0;  ///< β of the power heuristic
+  double parameter = 0;             ///< β of the power heuristic, α of the cutoff heuristic
+  WeightFunction custom = nullptr;  ///< of kCustom
 };
 
 /// Terms of `count` points: slot q's arrays begin at terms + q · (channels + techniques) · stride, channels first, then
@@ -50,10 +57,8 @@ using AccumulateValues = void (*)(const T* const* values, int outputs, int sampl
 
 struct EstimatorKernels {
   static constexpr const char* kSymbol = "halfslope_estimator_kernels";
-  void (*light_f32)(const LightingCall<float>&);
-  void (*light_f64)(const LightingCall<double>&);
-  void (*bsdf_f32)(const LightingCall<float>&);
-  void (*bsdf_f64)(const LightingCall<double>&);
+  void (*lighting_f32)(const LightingCall<float>&);
+  void (*lighting_f64)(const LightingCall<double>&);
   void (*fold_f32)(const FoldCall<float>&);
   void (*fold_f64)(const FoldCall<double>&);
   AccumulateValues<float> accumulate_f32;

@@ -3,11 +3,22 @@
 
 #include "estimators/kernel_functions.h"
 
+namespace halfslope::kernel {
+namespace {
+
+template <class T>
+void sample(const LightingCall<T>& call) {
+  const bool area = call.technique == LightingTechnique::kLight || call.technique == LightingTechnique::kSurface;
+  area ? sample_area(call) : sample_direction(call);
+}
+
+}  // namespace
+}  // namespace halfslope::kernel
+
 extern "C" __attribute__((visibility("default"))) const void* halfslope_estimator_kernels() {
   using namespace halfslope::kernel;
   static constexpr halfslope::EstimatorKernels kTable = {
-      sample_light<float>, sample_light<double>, sample_bsdf<float>, sample_bsdf<double>,
-      fold<float>,         fold<double>,         accumulate<float>,  accumulate<double>,
+      sample<float>, sample<double>, fold<float>, fold<double>, accumulate<float>, accumulate<double>,
   };
   return &kTable;
 }

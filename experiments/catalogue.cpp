@@ -26,6 +26,7 @@ std::unique_ptr<IntegralSource> render_source(Scene scene, const Catalogue::Reso
 Catalogue Catalogue::built_in() {
   Catalogue catalogue;
   catalogue.samplers = SamplerCatalogue::built_in();
+  catalogue.estimators = EstimatorCatalogue::built_in();
   for (const SceneEntry& scene : rendered_scenes()) {
     catalogue.add_scene({scene.name, "", scene.description, scene.reference, true},
                         [](const std::string& name, const Resolution& resolution) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/integral.h"
+#include "estimators/estimator.h"
 #include "samplers/catalogue.h"
 
 namespace halfslope {
@@ -19,9 +20,10 @@ struct SceneInfo {
   bool rendered = false;
 };
 
-/// Samplers and scenes by name. Embedders add their own before they call the command line:
+/// Samplers, estimators and scenes by name. Embedders add their own before they call the command line:
 ///   auto catalogue = Catalogue::built_in();
 ///   catalogue.samplers.add(make_my_sampler);
+///   catalogue.estimators.add({"my-heuristic", "what it is", "where from"}, my_weight);
 ///   catalogue.add_scene({"my-scene", "", "what it is", "where from"}, make_my_scene);
 ///   return halfslope::command_line(argc, argv, catalogue);
 class Catalogue {
@@ -34,6 +36,7 @@ class Catalogue {
   static Catalogue built_in();
 
   SamplerCatalogue samplers;
+  EstimatorCatalogue estimators;
   void add_scene(SceneInfo info, MakeScene make);
   std::vector<SceneInfo> scenes() const;
   /// A catalogue scene ("name" or "name:parameters"), or a Mitsuba scene where the name ends in ".xml". Throws

@@ -143,10 +143,10 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const Precision precision = parse_precision(a.precision);
   const auto source = make_source(catalogue, a.scene, a.resolution);
   const Estimator estimator = flag("--estimator", [&] {
-    if (!a.estimator.empty()) return parse_estimator(a.estimator, source->techniques());
+    if (!a.estimator.empty()) return catalogue.estimators.parse(a.estimator, source->techniques());
     // Both techniques of a rendered scene; what an integrand has.
-    return parse_estimator(source->techniques().size() > 1 ? "balance" : source->techniques().front().name,
-                           source->techniques());
+    return catalogue.estimators.parse(source->techniques().size() > 1 ? "balance" : source->techniques().front().name,
+                                      source->techniques());
   });
   const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(a.sampler); });
   const Layout layout = estimator.allocation.layout(source->techniques());

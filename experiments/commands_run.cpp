@@ -32,7 +32,7 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
                                   s.randomised ? "randomised" : "deterministic", s.max_dims)});
     }
   } else if (what == "estimators") {
-    for (const EstimatorInfo& e : estimator_catalogue()) rows.push_back({e.name, e.description, e.reference, ""});
+    for (const EstimatorInfo& e : catalogue.estimators.list()) rows.push_back({e.name, e.description, e.reference, ""});
   } else if (what == "scenes") {
     for (const SceneInfo& s : catalogue.scenes()) {
       rows.push_back({s.parameters.empty() ? s.name : s.name + ":" + s.parameters, s.description, s.reference,

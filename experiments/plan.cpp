@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "experiments/joined.h"
+#include "experiments/reference.h"
 
 namespace halfslope {
 namespace {
@@ -78,27 +79,30 @@ std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estim
 PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std::string& name, Plan& plan) {
   PlannedScene scene;
   scene.name = name;
-  const auto make = [&] { return catalogue.make_scene(name, spec.resolution); };
+  const auto make = [&] {
+    // A resolution is for those of several scenes that have one; of a lone scene it is a mistake where it means
+    // nothing.
+    if (!spec.resolution || spec.scenes.size() == 1) return catalogue.make_scene(name, spec.resolution);
+    auto source = catalogue.make_scene(name, std::nullopt);
+    return source->takes_resolution() ? catalogue.make_scene(name, spec.resolution) : std::move(source);
+  };
   // A file's fault stays the file's, whoever named it: its errors begin with its own line.
   scene.source = name.ends_with(".xml") ? make() : at(spec, "scene", make);
   scene.pixels = choose_pixels(scene.source->pixels(), spec.pixels);
-  auto names = spec.estimators;
-  if (names.empty()) {
-    for (const Technique& technique : scene.source->techniques()) names.push_back(technique.name);
-    if (names.size() > 1) names.insert(names.end(), {"average", "balance", "power"});
-  }
-  for (const auto& estimator : names) {
-    scene.estimators.push_back(at(spec, "estimators", [&] {
-      try {
-        return parse_estimator(estimator, scene.source->techniques());
-      } catch (const Error& error) {
-        fail(error.code(), "scene '{}': {}", name, error.what());
-      }
-    }));
+  const auto techniques = scene.source->techniques();
+  for (const auto& estimator : spec.estimators.empty() ? default_estimators(techniques) : spec.estimators) {
+    try {
+      scene.estimators.push_back(catalogue.estimators.parse(estimator, techniques));
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::kBadInput) throw;
+      // What another of several scenes may take is left out here; what none takes is an error, told below.
+      scene.misfits.emplace_back(estimator, fmt::format("scene '{}': {}", name, error.what()));
+    }
   }
   for (const auto& skip : scene.source->skips()) plan.skips.push_back(fmt::format("{}: {}", name, skip));
-  if (scene.source->closed_form(0))
-    plan.skips.push_back(fmt::format("{}: its integral is known in closed form: no reference is rendered", name));
+  if (has_closed_form(*scene.source, scene.pixels))
+    plan.skips.push_back(fmt::format("{}: its integral{} known in closed form: no reference is rendered", name,
+                                     scene.source->pixels() == 1 ? " is" : "s are"));
   if (scene.pixels.size() < static_cast<std::size_t>(scene.source->pixels())) {
     plan.skips.push_back(
         fmt::format("{}: {} of {} pixels are measured, as asked", name, scene.pixels.size(), scene.source->pixels()));
@@ -106,6 +110,27 @@ PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std:
       plan.skips.push_back(fmt::format("{}: no images, since not all pixels are measured", name));
   }
   return scene;
+}
+
+// An estimator that some scene takes is left out where it does not fit; one that fits nowhere is a mistake.
+void place_estimators(const Spec& spec, Plan& plan) {
+  for (PlannedScene& scene : plan.scenes) {
+    std::vector<std::string> left_out;
+    for (const auto& [name, problem] : scene.misfits) {
+      const bool fits_elsewhere = std::any_of(plan.scenes.begin(), plan.scenes.end(), [&](const PlannedScene& other) {
+        return std::any_of(other.estimators.begin(), other.estimators.end(),
+                           [&](const Estimator& e) { return e.name == name; });
+      });
+      if (!fits_elsewhere) fail_at(spec, "estimators", problem);
+      left_out.push_back(name);
+    }
+    if (left_out.empty()) continue;
+    std::vector<std::string> techniques;
+    for (const Technique& technique : scene.source->techniques()) techniques.push_back(technique.name);
+    plan.skips.push_back(
+        fmt::format("{}: has {} to draw with; left out: {}", scene.name, joined(techniques), joined(left_out)));
+    if (scene.estimators.empty()) plan.left_out.push_back(plan.skips.back());
+  }
 }
 
 // Tiles and batches that hold about kUnitSamples, a function of the spec alone.
@@ -214,6 +239,7 @@ std::string cell_name(const Plan& plan, const Cell& cell) {
 Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   Plan plan;
   for (const auto& name : spec.scenes) plan.scenes.push_back(plan_scene(spec, catalogue, name, plan));
+  place_estimators(spec, plan);
   std::vector<std::unique_ptr<Sampler>> samplers;
   for (const auto& name : spec.samplers)
     samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/integral.h"
@@ -19,6 +20,7 @@ struct PlannedScene {
   std::shared_ptr<const IntegralSource> source;
   std::vector<int> pixels;  ///< the chosen ones, ascending; indices into the full image
   std::vector<Estimator> estimators;
+  std::vector<std::pair<std::string, std::string>> misfits;  ///< estimators that it cannot have, and why
 };
 
 /// A run over points that several cells share: one scene, precision, sampler and allocation; every heuristic and N.

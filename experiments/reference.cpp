@@ -60,7 +60,7 @@ class Renderer {
   Renderer(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
            const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers)
       : source_(source), name_(name), pixels_(pixels), options_(options), samplers_(samplers) {
-    for (std::size_t i = 0; i < source.techniques().size(); ++i) {
+    for (std::size_t i = 0; i < source.reference_techniques(); ++i) {
       allocation_.techniques.push_back(static_cast<int>(i));
       allocation_.counts.push_back(1);
     }
@@ -255,9 +255,13 @@ std::optional<std::size_t> Reference::first_nonfinite(int channels) const {
   return std::nullopt;
 }
 
+bool has_closed_form(const IntegralSource& source, const std::vector<int>& pixels) {
+  return std::all_of(pixels.begin(), pixels.end(), [&](int pixel) { return source.closed_form(pixel).has_value(); });
+}
+
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers) {
-  if (source.closed_form(pixels.front())) return closed_form_reference(source, pixels);
+  if (has_closed_form(source, pixels)) return closed_form_reference(source, pixels);
   Renderer renderer(source, name, pixels, goal, options, samplers);
   State state;
   double share = 0, relative = 0;
@@ -305,7 +309,7 @@ Reference make_reference(const IntegralSource& source, const std::string& name, 
 
 std::int64_t cached_replicates(const IntegralSource& source, const std::vector<int>& pixels, const ReferenceGoal& goal,
                                const std::filesystem::path& cache, const SamplerCatalogue& samplers) {
-  if (source.closed_form(pixels.front())) return 0;
+  if (has_closed_form(source, pixels)) return 0;
   const ReferenceOptions options = {0, true, cache};
   const std::string name;
   const Renderer renderer(source, name, pixels, goal, options, samplers);

@@ -45,10 +45,13 @@ struct ReferenceOptions {
   std::filesystem::path cache;  ///< folder of finished references; empty: none
 };
 
-/// The reference of the chosen pixels: the closed form where there is one, else the balance heuristic over all
-/// techniques in binary64 on halton-owen points with keys of their own, replicates doubled from 16 until the goal is
-/// met. The same for any threads and any state of the cache. Throws Error(kBadInput) if most_replicates do not reach
-/// the goal, saying what to do, and Error(kInterrupted).
+/// Whether every chosen pixel is known in closed form.
+bool has_closed_form(const IntegralSource& source, const std::vector<int>& pixels);
+
+/// The reference of the chosen pixels: the closed form where there is one, else the balance heuristic over the
+/// source's reference techniques in binary64 on halton-owen points with keys of their own, replicates doubled from 16
+/// until the goal is met. The same for any threads and any state of the cache. Throws Error(kBadInput) if
+/// most_replicates do not reach the goal, saying what to do, and Error(kInterrupted).
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers);
 

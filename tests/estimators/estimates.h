@@ -31,6 +31,9 @@ std::vector<std::vector<double>> estimate(const IntegralSource& source, int pixe
                              estimator.allocation, {estimator.heuristic}, {request.rounds}, source.channels());
   const PixelIntegral integral = source.pixel(pixel);
   std::vector<std::vector<double>> estimates(static_cast<std::size_t>(source.channels()));
+  if (!integral.integral) {  // nothing but the constant part
+    return {estimates.size(), std::vector<double>(static_cast<std::size_t>(request.replicates), 0.0)};
+  }
   const StreamKey key = stream_key(request.seed, request.sampler, "test");
   for (int replicate = 0; replicate < request.replicates; replicate += kLanes) {
     evaluator.run(*integral.integral, key, static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(replicate));

@@ -16,6 +16,8 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const std::vector<Technique> kScene = {{"light", {{1, 2}}}, {"bsdf", {{2}}}};
+const std::vector<Technique> kLighting = {
+    {"light", {{1, 2}}}, {"bsdf", {{2}}}, {"hemisphere", {{2}}}, {"cosine", {{2}}}, {"surface", {{1, 2}}}};
 const std::vector<Technique> kIntegrand = {{"mean", {{2}}}};
 
 TEST(ParseEstimator, ATechniquesNameIsItsOwnEstimator) {
@@ -86,9 +88,9 @@ std::string error_of(const std::string& name, const std::vector<Technique>& tech
 TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
   EXPECT_EQ(error_of("balence", kScene),
             "there is no estimator 'balence' for this scene; did you mean 'balance'? (it has light, bsdf, average, "
-            "balance, power)");
+            "balance, power, cutoff, maximum)");
   EXPECT_EQ(error_of("", kScene),
-            "there is no estimator '' for this scene (it has light, bsdf, average, balance, power)");
+            "there is no estimator '' for this scene (it has light, bsdf, average, balance, power, cutoff, maximum)");
   EXPECT_EQ(error_of("light*3", kScene).find("there is no estimator 'light*3'"), 0u);
   EXPECT_EQ(error_of("balance@light+bsfd", kScene),
             "estimator 'balance@light+bsfd': there is no technique 'bsfd' here; did you mean 'bsdf'? (this scene has "
@@ -119,11 +121,11 @@ TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
 }
 
 TEST(EstimatorCatalogue, EveryEntryIsWhatTheParserKnows) {
-  ASSERT_FALSE(estimator_catalogue().empty());
-  for (const EstimatorInfo& info : estimator_catalogue()) {
+  ASSERT_FALSE(EstimatorCatalogue::built_in().list().empty());
+  for (const EstimatorInfo& info : EstimatorCatalogue::built_in().list()) {
     EXPECT_FALSE(info.description.empty() || info.reference.empty()) << info.name;
     const std::string name = info.name.substr(0, info.name.find('['));
-    const auto& techniques = name == "mean" ? kIntegrand : kScene;
+    const auto& techniques = name == "mean" ? kIntegrand : kLighting;
     EXPECT_NO_THROW(parse_estimator(name, techniques)) << name;
   }
 }
