@@ -1,9 +1,24 @@
 #include "samplers/radical_inverse.h"
 
+#include <array>
+
 #include "core/assertion.h"
 
 namespace halfslope {
 namespace {
+
+constexpr std::size_t kPrimes = 1024;
+
+constexpr std::array<std::uint32_t, kPrimes> first_primes() {
+  std::array<std::uint32_t, kPrimes> primes = {};
+  std::size_t found = 0;
+  for (std::uint32_t n = 2; found < primes.size(); ++n) {
+    bool prime = true;
+    for (std::size_t i = 0; i < found && primes[i] * primes[i] <= n && prime; ++i) prime = n % primes[i] != 0;
+    if (prime) primes[found++] = n;
+  }
+  return primes;
+}
 
 __extension__ using Wide = unsigned __int128;
 
@@ -35,6 +50,11 @@ double radical_inverse(std::uint32_t base, std::uint64_t index) {
 
 float radical_inverse_f32(std::uint32_t base, std::uint64_t index) {
   return static_cast<float>(fraction(base, index).high >> 8) * 0x1p-24f;
+}
+
+std::span<const std::uint32_t> primes() {
+  static constexpr auto kTable = first_primes();
+  return kTable;
 }
 
 }  // namespace halfslope

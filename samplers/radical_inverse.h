@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace halfslope {
 
@@ -10,5 +11,8 @@ double radical_inverse(std::uint32_t base, std::uint64_t index);
 
 /// The top 24 bits of radical_inverse: φ_b(n) rounded down to a multiple of 2⁻²⁴.
 float radical_inverse_f32(std::uint32_t base, std::uint64_t index);
+
+/// The first 1024 primes: the bases of the Halton and Hammersley dimensions.
+std::span<const std::uint32_t> primes();
 
 }  // namespace halfslope

@@ -4,7 +4,7 @@
 #include <array>
 #include <functional>
 
-#include "samplers/halton_owen.h"
+#include "samplers/radical_inverse.h"
 #include "tests/samplers/chi_squared.h"
 #include "tests/samplers/points.h"
 

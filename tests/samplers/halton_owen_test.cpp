@@ -5,24 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "samplers/radical_inverse.h"
 #include "tests/samplers/chi_squared.h"
 #include "tests/samplers/points.h"
 
 namespace halfslope {
 namespace {
-
-TEST(HaltonOwen, BasesAreTheFirst1024Primes) {
-  ASSERT_EQ(primes().size(), 1024u);
-  std::size_t found = 0;
-  for (std::uint32_t n = 2; n <= 8161; ++n) {
-    bool prime = true;
-    for (std::uint32_t q = 2; q * q <= n && prime; ++q) prime = n % q != 0;
-    if (prime) {
-      ASSERT_EQ(primes()[found++], n);
-    }
-  }
-  EXPECT_EQ(found, 1024u);
-}
 
 TEST(HaltonOwen, EveryElementaryIntervalHoldsOnePointOfEveryBlock) {
   // Points m·M … (m+1)·M − 1 with M = 2^k·3^l·5^n: one in each box of 2^k × 3^l × 5^n equal intervals.

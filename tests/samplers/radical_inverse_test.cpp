@@ -4,10 +4,21 @@
 
 #include <cmath>
 
-#include "samplers/halton_owen.h"
-
 namespace halfslope {
 namespace {
+
+TEST(Primes, AreTheFirst1024) {
+  ASSERT_EQ(primes().size(), 1024u);
+  std::size_t found = 0;
+  for (std::uint32_t n = 2; n <= 8161; ++n) {
+    bool prime = true;
+    for (std::uint32_t q = 2; q * q <= n && prime; ++q) prime = n % q != 0;
+    if (prime) {
+      ASSERT_EQ(primes()[found++], n);
+    }
+  }
+  EXPECT_EQ(found, 1024u);
+}
 
 struct Case {
   std::uint32_t base;

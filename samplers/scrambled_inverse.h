@@ -1,0 +1,29 @@
+// One dimension of nested-scrambled radical inverses, shared by the samplers that are made of them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "samplers/word_source.h"
+
+namespace halfslope {
+
+class ScrambledInverse {
+ public:
+  /// Ready for the first `count` indices in `base`, kLanes scrambles at a time, keyed by the words of dimension `dim`.
+  void prepare(const WordSource& words, int dim, std::uint32_t base, std::uint64_t count);
+  /// Points begin … begin + block.samples() − 1 into dimension `dim` of the block.
+  void fill(std::uint64_t begin, PointBlock& block, int dim) const;
+
+  /// The most points there are in the first `bases` primes: the kernel holds a point's digits in 31 bits, so it is the
+  /// least, over them, of the largest powers up to 2³¹.
+  static std::uint64_t most_points(int bases);
+
+ private:
+  std::array<std::uint32_t, 4 * kLanes> keys_;
+  AlignedBuffer<double> table_;
+  std::uint32_t base_ = 2, table_digits_ = 0;
+  const SamplerKernels* kernels_ = nullptr;
+};
+
+}  // namespace halfslope
