@@ -2,8 +2,12 @@
 
 #include "core/assertion.h"
 #include "core/error.h"
+#include "samplers/halton.h"
 #include "samplers/halton_owen.h"
+#include "samplers/hammersley.h"
+#include "samplers/hammersley_owen.h"
 #include "samplers/independent.h"
+#include "samplers/jittered.h"
 #include "samplers/n_rooks.h"
 #include "samplers/stratified.h"
 
@@ -15,8 +19,14 @@ SamplerCatalogue SamplerCatalogue::built_in() {
   SamplerCatalogue catalogue;
   catalogue.add(make_independent);
   catalogue.add(make_stratified);
+  catalogue.add(make_jittered);
   catalogue.add(make_n_rooks);
+  catalogue.add(make_halton);
+  catalogue.add(make_halton_cp);
   catalogue.add(make_halton_owen);
+  catalogue.add(make_hammersley);
+  catalogue.add(make_hammersley_cp);
+  catalogue.add(make_hammersley_owen);
   return catalogue;
 }
 

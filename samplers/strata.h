@@ -27,6 +27,15 @@ class Strata {
       for (int l = 0; l < kLanes; ++l) words[l] = place(cells[l], words[l]);
     }
   }
+  /// place() for each lane of the same stratum.
+  void place_row(std::uint64_t index, std::uint32_t* words) const {
+    if (count_ == 1) return;  // all of [0, 1), whose width 32 bits do not hold
+    const auto lower = static_cast<std::uint32_t>(edge(index));
+    const auto width = static_cast<std::uint32_t>(edge(index + 1) - lower);
+    for (int l = 0; l < kLanes; ++l) {
+      words[l] = lower + static_cast<std::uint32_t>((std::uint64_t{width} * words[l]) >> 32);
+    }
+  }
 
  private:
   static constexpr std::uint64_t kTabled = 4096;  // a division would cost more than the rest of a coordinate

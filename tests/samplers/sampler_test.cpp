@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
+#include <functional>
 #include <random>
 
 #include "core/coordinates.h"
@@ -16,12 +18,19 @@ namespace {
 
 const Layout kLayout = {{1, 2, 2, 1, 2}};
 
-std::vector<std::string> names(bool sequences_only) {
+std::vector<std::string> names(const std::function<bool(const SamplerInfo&)>& wanted) {
   std::vector<std::string> names;
   for (const SamplerInfo& info : SamplerCatalogue::built_in().list()) {
-    if (info.sequence || !sequences_only) names.push_back(info.name);
+    if (wanted(info)) names.push_back(info.name);
   }
   return names;
+}
+
+/// `count`, or where there are no so many points the next legal count, above if there is one.
+std::uint64_t legal(const Sampler& sampler, std::uint64_t count) {
+  const auto neighbours = sampler.illegal(count, kLayout);
+  if (!neighbours) return count;
+  return neighbours->above ? *neighbours->above : neighbours->below.value();
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& info) {
@@ -31,13 +40,28 @@ std::string test_name(const testing::TestParamInfo<std::string>& info) {
 }
 
 class EverySampler : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Catalogue, EverySampler, testing::ValuesIn(names(false)), test_name);
+INSTANTIATE_TEST_SUITE_P(Catalogue, EverySampler, testing::ValuesIn(names([](const SamplerInfo&) { return true; })),
+                         test_name);
 class EverySequence : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Catalogue, EverySequence, testing::ValuesIn(names(true)), test_name);
+INSTANTIATE_TEST_SUITE_P(Catalogue, EverySequence,
+                         testing::ValuesIn(names([](const SamplerInfo& s) { return s.sequence; })), test_name);
+class EveryRandomisedSampler : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryRandomisedSampler,
+                         testing::ValuesIn(names([](const SamplerInfo& s) { return s.randomised; })), test_name);
+class EveryDeterministicSampler : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Catalogue, EveryDeterministicSampler,
+                         testing::ValuesIn(names([](const SamplerInfo& s) { return !s.randomised; })), test_name);
+/// Where each index alone is uniform on the whole cube. A jittered point is uniform in the cell of its index.
+class EverySamplerOfUniformPoints : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Catalogue, EverySamplerOfUniformPoints, testing::ValuesIn(names([](const SamplerInfo& s) {
+                           return s.randomised && s.name != "jittered";
+                         })),
+                         test_name);
 
 TEST_P(EverySampler, CoordinatesAreBelowOneAndBinary32IsTheTopOfBinary64) {
   const auto sampler = sampler_named(GetParam());
-  for (const std::uint64_t count : {1u, 100u, 5000u}) {
+  for (const std::uint64_t about : {1u, 100u, 5000u}) {
+    const std::uint64_t count = legal(*sampler, about);
     sampler->prepare(
         {.count = count, .layout = &kLayout, .key = kTestKey, .pixel = 1, .replicate = 0, .low_words = true});
     PointBlock block;
@@ -60,13 +84,15 @@ TEST_P(EverySampler, CoordinatesAreBelowOneAndBinary32IsTheTopOfBinary64) {
 
 TEST_P(EverySampler, HighWordsAreTheSameWithoutLowWords) {
   const auto sampler = sampler_named(GetParam());
-  const Points points = points_of(*sampler, 300, kLayout);
-  sampler->prepare({.count = 300, .layout = &kLayout, .key = kTestKey, .pixel = 7, .replicate = 0, .low_words = false});
+  const std::uint64_t count = legal(*sampler, 300);
+  const Points points = points_of(*sampler, count, kLayout);
+  sampler->prepare(
+      {.count = count, .layout = &kLayout, .key = kTestKey, .pixel = 7, .replicate = 0, .low_words = false});
   PointBlock block;
-  block.reset(kLayout.dims(), 300, false);
+  block.reset(kLayout.dims(), static_cast<int>(count), false);
   sampler->fill(0, block);
   for (int dim = 0; dim < block.dims(); ++dim) {
-    for (int s = 0; s < 300; ++s) {
+    for (int s = 0; s < block.samples(); ++s) {
       for (int lane = 0; lane < kLanes; ++lane) {
         ASSERT_EQ(block.high(dim)[s * kLanes + lane], points.at(dim, static_cast<std::uint64_t>(s), lane) >> 21);
       }
@@ -74,12 +100,13 @@ TEST_P(EverySampler, HighWordsAreTheSameWithoutLowWords) {
   }
 }
 
-TEST_P(EverySampler, MarginalOfEachIndexIsUniform) {
+TEST_P(EverySamplerOfUniformPoints, MarginalOfEachIndexIsUniform) {
   // 65536 replicates in 64 bins of the coordinate and 64 of its digits 2⁻⁷ … 2⁻¹²: χ² with 63 degrees, false alarm 1e-9
   // for each of about 300.
   constexpr std::uint32_t kGroups = 4096;
   const auto sampler = sampler_named(GetParam());
-  for (const std::uint64_t count : {1u, 5u, 8u}) {
+  for (const std::uint64_t about : {1u, 5u, 8u}) {
+    const std::uint64_t count = legal(*sampler, about);
     std::vector<std::array<std::array<std::uint32_t, 64>, 2>> bins(count * static_cast<std::size_t>(kLayout.dims()));
     for (std::uint32_t group = 0; group < kGroups; ++group) {
       const Points points = points_of(*sampler, count, kLayout, group * kLanes);
@@ -101,40 +128,108 @@ TEST_P(EverySampler, MarginalOfEachIndexIsUniform) {
   }
 }
 
-TEST_P(EverySampler, PixelsSeedsAndReplicatesAreIndependentAndRepeatable) {
-  const auto sampler = sampler_named(GetParam());
+/// Points of one pixel against those of the next pixel, another seed and other replicates: whether ⌊x · intervals⌋ mod
+/// 16 of both are uniform and independent, at each of four indices of dimension 1 (a table for each: the points of a
+/// replicate may have a shift in common). χ² with 255 degrees, false alarm 1e-8 for each of 12.
+void expect_independent(const std::string& name, std::uint64_t intervals) {
+  constexpr std::size_t kIndices = 4;
+  const auto sampler = sampler_named(name);
   const StreamKey other_key = stream_key(20240230, "test", "points");
-  const Points points = points_of(*sampler, 64, kLayout);
-  EXPECT_EQ(points, points_of(*sampler_named(GetParam()), 64, kLayout));
-  // Lane l is replicate + l.
-  const Points shifted = points_of(*sampler, 64, kLayout, 5);
-  for (int lane = 0; lane + 5 < kLanes; ++lane) {
-    for (std::uint64_t i = 0; i < 64; ++i) ASSERT_EQ(shifted.at(3, i, lane), points.at(3, i, lane + 5));
-  }
-  // Against the next pixel, seed and replicate: 16 × 16 bins at six indices, false alarm 1e-8 each.
-  std::array<std::array<std::uint32_t, 256>, 3> joint = {};
+  const std::uint64_t count = legal(*sampler, 6);
+  std::array<std::array<std::array<std::uint32_t, 256>, kIndices>, 3> joint = {};
   for (std::uint32_t pixel = 0; pixel < 512; ++pixel) {
-    const Points here = points_of(*sampler, 6, kLayout, 0, pixel);
-    const std::array<Points, 3> others = {points_of(*sampler, 6, kLayout, 0, pixel + 1000),
-                                          points_of(*sampler, 6, kLayout, 0, pixel, other_key),
-                                          points_of(*sampler, 6, kLayout, kLanes, pixel)};
-    for (std::uint64_t i = 0; i < 6; ++i) {
+    const Points here = points_of(*sampler, count, kLayout, 0, pixel, kTestKey, kIndices);
+    const std::array<Points, 3> others = {points_of(*sampler, count, kLayout, 0, pixel + 1000, kTestKey, kIndices),
+                                          points_of(*sampler, count, kLayout, 0, pixel, other_key, kIndices),
+                                          points_of(*sampler, count, kLayout, kLanes, pixel, kTestKey, kIndices)};
+    for (std::size_t i = 0; i < kIndices; ++i) {
       for (int lane = 0; lane < kLanes; ++lane) {
+        const std::uint64_t digits = here.interval(1, i, lane, intervals) % 16;
         for (std::size_t o = 0; o < others.size(); ++o) {
-          ++joint[o][here.interval(1, i, lane, 16) * 16 + others[o].interval(1, i, lane, 16)];
+          ++joint[o][i][digits * 16 + others[o].interval(1, i, lane, intervals) % 16];
         }
       }
     }
   }
-  for (const auto& counts : joint) {
-    EXPECT_LT(chi_squared(std::span<const std::uint32_t>(counts)), chi_squared_upper(255, 1e-8));
+  for (const auto& other : joint) {
+    for (const auto& counts : other) {
+      EXPECT_LT(chi_squared(std::span<const std::uint32_t>(counts)), chi_squared_upper(255, 1e-8));
+    }
+  }
+}
+
+TEST_P(EveryRandomisedSampler, PixelsSeedsAndReplicatesAreIndependentAndRepeatable) {
+  const auto sampler = sampler_named(GetParam());
+  const std::uint64_t count = legal(*sampler, 64);
+  const Points points = points_of(*sampler, count, kLayout);
+  EXPECT_EQ(points, points_of(*sampler_named(GetParam()), count, kLayout));
+  // Lane l is replicate + l.
+  const Points shifted = points_of(*sampler, count, kLayout, 5);
+  for (int lane = 0; lane + 5 < kLanes; ++lane) {
+    for (std::uint64_t i = 0; i < count; ++i) ASSERT_EQ(shifted.at(3, i, lane), points.at(3, i, lane + 5));
+  }
+  expect_independent(GetParam(), 64);  // digits 2⁻³ … 2⁻⁶, below the cells of a jittered point
+}
+
+TEST_P(EverySamplerOfUniformPoints, FirstDigitsOfPixelsSeedsAndReplicatesAreIndependent) {
+  expect_independent(GetParam(), 16);
+}
+
+TEST_P(EveryDeterministicSampler, PointsAreTheSameInEveryLaneReplicatePixelAndSeed) {
+  const auto sampler = sampler_named(GetParam());
+  EXPECT_FALSE(sampler->info().unbiased);
+  for (const std::uint64_t count : {1u, 64u, 999u}) {
+    const Points points = points_of(*sampler, count, kLayout);
+    EXPECT_EQ(points, points_of(*sampler, count, kLayout, 5 * kLanes));
+    EXPECT_EQ(points, points_of(*sampler, count, kLayout, 0, 8));
+    EXPECT_EQ(points, points_of(*sampler, count, kLayout, 0, 7, stream_key(2, "test", "points")));
+    for (int dim = 0; dim < kLayout.dims(); ++dim) {
+      for (std::uint64_t i = 0; i < count; ++i) {
+        for (int lane = 1; lane < kLanes; ++lane) ASSERT_EQ(points.at(dim, i, lane), points.at(dim, i, 0));
+      }
+    }
+  }
+}
+
+TEST_P(EveryRandomisedSampler, MeanOfTheProductOfAPairIsAQuarter) {
+  // ∫∫ xy = 1/4, of pairs of the layout and of coordinates from different groups: means over 16384
+  // replicates, each a mean of N points in [0, 1], against their own standard error. Normal to all that matters; false
+  // alarm 2e-9 for each of 12 means.
+  constexpr std::uint32_t kGroups = 1024;
+  constexpr double kReplicates = kGroups * kLanes;
+  constexpr std::array<std::array<int, 2>, 6> kPairs = {{{0, 1}, {1, 2}, {3, 4}, {2, 3}, {6, 7}, {1, 6}}};
+  const auto sampler = sampler_named(GetParam());
+  EXPECT_TRUE(sampler->info().unbiased);
+  for (const std::uint64_t about : {1u, 6u}) {
+    const std::uint64_t count = legal(*sampler, about);
+    std::array<double, kPairs.size()> sum = {}, squares = {};
+    for (std::uint32_t group = 0; group < kGroups; ++group) {
+      const Points points = points_of(*sampler, count, kLayout, group * kLanes);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        for (std::size_t p = 0; p < kPairs.size(); ++p) {
+          double error = 0;
+          for (std::uint64_t i = 0; i < count; ++i) {
+            error += points(kPairs[p][0], i, lane) * points(kPairs[p][1], i, lane) - 0.25;
+          }
+          error /= static_cast<double>(count);
+          sum[p] += error;
+          squares[p] += error * error;
+        }
+      }
+    }
+    for (std::size_t p = 0; p < kPairs.size(); ++p) {
+      const double mean = sum[p] / kReplicates;
+      const double se = std::sqrt((squares[p] / kReplicates - mean * mean) / (kReplicates - 1));
+      EXPECT_LT(std::abs(mean) / se, 6) << count << " dims " << kPairs[p][0] << ' ' << kPairs[p][1];
+    }
   }
 }
 
 TEST_P(EverySampler, BlocksMayBeFilledInAnySplitAndOrder) {
   std::mt19937 random(1);
   const auto sampler = sampler_named(GetParam());
-  for (const std::uint64_t count : {1u, 37u, 1000u, 4500u}) {
+  for (const std::uint64_t about : {1u, 37u, 1000u, 4500u}) {
+    const std::uint64_t count = legal(*sampler, about);
     const Points whole = points_of(*sampler, count, kLayout, 0, 7, kTestKey, 0, static_cast<int>(count));
     for (int trial = 0; trial < 4; ++trial) {
       EXPECT_EQ(whole, points_of(*sampler, count, kLayout, 0, 7, kTestKey, 0, 1 + static_cast<int>(random() % 300)));
@@ -172,11 +267,12 @@ TEST_P(EverySequence, PrefixIsTheSameWhateverWasPrepared) {
 
 TEST_P(EverySampler, WordsAreTheSameOnEveryIsa) {
   const std::vector<Isa> isas = supported_isas();
-  for (const std::uint64_t count : {3u, 1000u, 5003u}) {
+  for (const std::uint64_t about : {3u, 1000u, 5003u}) {
     std::vector<Points> points;
     for (const Isa isa : isas) {
       const IsaScope scope(to_string(isa));
-      points.push_back(points_of(*sampler_named(GetParam()), count, kLayout));
+      const auto sampler = sampler_named(GetParam());
+      points.push_back(points_of(*sampler, legal(*sampler, about), kLayout));
     }
     for (std::size_t i = 1; i < points.size(); ++i) EXPECT_EQ(points[i], points[0]) << to_string(isas[i]);
   }
@@ -196,8 +292,27 @@ TEST_P(EverySampler, DeclaresItselfAndRefusesNoPoints) {
   EXPECT_FALSE(sampler->illegal(1, kLayout));
   const auto many = sampler->illegal(info.max_count + 1, kLayout);
   ASSERT_TRUE(many);
+  EXPECT_LE(many->below.value(), info.max_count);
+  EXPECT_EQ(many->above, std::nullopt);
   EXPECT_FALSE(sampler->illegal(many->below.value(), kLayout));
   EXPECT_TRUE(sampler->illegal(many->below.value() + 1, kLayout));
+}
+
+TEST_P(EverySampler, NeighboursOfAnIllegalCountAreLegalAndNearest) {
+  const auto sampler = sampler_named(GetParam());
+  std::optional<std::uint64_t> below;
+  for (std::uint64_t count = 1; count <= 10000; ++count) {
+    const auto neighbours = sampler->illegal(count, kLayout);
+    if (!neighbours) {
+      below = count;
+      continue;
+    }
+    ASSERT_EQ(neighbours->below, below) << count;
+    ASSERT_TRUE(neighbours->above) << count;
+    ASSERT_GT(*neighbours->above, count);
+    ASSERT_FALSE(sampler->illegal(*neighbours->above, kLayout)) << count;
+    ASSERT_TRUE(sampler->illegal(*neighbours->above - 1, kLayout)) << count;
+  }
 }
 
 }  // namespace
