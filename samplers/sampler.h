@@ -18,7 +18,7 @@ struct SamplerInfo {
   bool sequence = false;
   /// A deterministic sampler has one replicate, and the same points in every pixel.
   bool randomised = true;
-  /// Each point's marginal is uniform, so estimates are unbiased.
+  /// Estimates are unbiased: each point is uniform, or (jittered points) one picked from the set at random is.
   bool unbiased = true;
   int max_dims = 0;
   std::uint64_t max_count = std::uint64_t{1} << 31;

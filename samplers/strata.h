@@ -21,8 +21,9 @@ class Strata {
   }
   /// place() for each lane: words[l] becomes the high word at fraction words[l] of stratum cells[l].
   void place_lanes(const std::uint32_t* cells, std::uint32_t* words) const {
-    if (shift_ > 0) {  // a power of two: the stratum is the upper bits
-      for (int l = 0; l < kLanes; ++l) words[l] = (cells[l] << shift_) + (words[l] >> (32 - shift_));
+    const int shift = shift_;  // the compiler must take it that a word written could be the member
+    if (shift > 0) {           // a power of two: the stratum is the upper bits
+      for (int l = 0; l < kLanes; ++l) words[l] = (cells[l] << shift) + (words[l] >> (32 - shift));
     } else {
       for (int l = 0; l < kLanes; ++l) words[l] = place(cells[l], words[l]);
     }
@@ -31,6 +32,11 @@ class Strata {
   void place_row(std::uint64_t index, std::uint32_t* words) const {
     if (count_ == 1) return;  // all of [0, 1), whose width 32 bits do not hold
     const auto lower = static_cast<std::uint32_t>(edge(index));
+    const int shift = shift_;
+    if (shift > 0) {
+      for (int l = 0; l < kLanes; ++l) words[l] = lower + (words[l] >> (32 - shift));
+      return;
+    }
     const auto width = static_cast<std::uint32_t>(edge(index + 1) - lower);
     for (int l = 0; l < kLanes; ++l) {
       words[l] = lower + static_cast<std::uint32_t>((std::uint64_t{width} * words[l]) >> 32);

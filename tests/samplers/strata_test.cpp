@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -57,6 +58,11 @@ TEST(Strata, ARowOfLanesIsPlacedLikeEachAlone) {
     }
     strata.place_lanes(cells, placed);
     for (int lane = 0; lane < kLanes; ++lane) ASSERT_EQ(placed[lane], strata.place(cells[lane], words[lane])) << count;
+    for (const std::uint32_t cell : cells) {
+      std::copy_n(words, kLanes, placed);
+      strata.place_row(cell, placed);
+      for (int lane = 0; lane < kLanes; ++lane) ASSERT_EQ(placed[lane], strata.place(cell, words[lane])) << count;
+    }
   }
 }
 
