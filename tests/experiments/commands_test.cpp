@@ -64,7 +64,7 @@ TEST_F(Commands, ListsAreTablesAndJson) {
     }
   }
   EXPECT_THAT(command({"list", "samplers", "--names"}).out,
-              HasSubstr("independent\nstratified\nn-rooks\nhalton-owen\n"));
+              HasSubstr("independent\nstratified\njittered\nn-rooks\nhalton\nhalton-cp\nhalton-owen\n"));
 }
 
 TEST_F(Commands, JsonIsConvergenceCsv) {
@@ -130,7 +130,7 @@ TEST_F(Commands, CompletionIsAShellScript) {
   bash.program = "/bin/bash";
   const std::string script =
       "source <(" + kProgram + " completion); halfslope() { " + kProgram + " \"$@\"; }; " +
-      "COMP_WORDS=(halfslope points --sampler hal); COMP_CWORD=3; _halfslope; echo ${COMPREPLY[0]}; "
+      "COMP_WORDS=(halfslope points --sampler halton-o); COMP_CWORD=3; _halfslope; echo ${COMPREPLY[0]}; "
       "COMP_WORDS=(halfslope ren); COMP_CWORD=1; _halfslope; echo ${COMPREPLY[0]}; "
       "COMP_WORDS=(halfslope run --over); COMP_CWORD=2; _halfslope; echo ${COMPREPLY[0]}";
   const Ended ended = run_program({"-c", script}, bash);
