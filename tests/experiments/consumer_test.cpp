@@ -1,6 +1,7 @@
 // A downstream program (tests/consumer) whose sampler and scenes halfslope does not know, one of them not a number.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,29 @@ TEST_F(Consumer, ItsNamesAreListedAndOffered) {
   EXPECT_THAT(run("out", {"--scene", "rigde", "--samplers", "r2"}).err, HasSubstr("did you mean 'ridge'?"));
 }
 
+TEST_F(Consumer, ItsHeuristicIsThePowerHeuristicWithOneHalf) {
+  const Ended ended =
+      run("out", {"--scene", "aligned-phong-cap:n=10,alpha=0.2,one-ridge", "--samplers", "independent", "--estimators",
+                  "root,power:0.5,root@light*3+bsdf,power:0.5@light*3+bsdf,mean", "--precision", "f64"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const CsvTable cells = table("out", "convergence.csv");
+  ASSERT_EQ(cells.size(), 4u * 4 + 4);
+  for (std::size_t r = 0; r < 16; ++r) {
+    if (!cells.text(r, "estimator").starts_with("root")) continue;
+    EXPECT_NEAR(cells.number(r, "rmse") / cells.number(r + 4, "rmse"), 1, 1e-12);
+  }
+}
+
+/// The examples of CONTRIBUTING.md are this program's own files.
+TEST_F(Consumer, TheWorkedExamplesAreCompiled) {
+  const std::string page = read_file(HALFSLOPE_SOURCE_DIR "/CONTRIBUTING.md");
+  for (const std::string file : {"r2_sampler.h", "root_heuristic.h", "ridge_scene.h"}) {
+    const std::string text = read_file(HALFSLOPE_SOURCE_DIR "/tests/consumer/" + file);
+    EXPECT_THAT(page, HasSubstr("```cpp\n" + text + "```\n")) << file;
+    EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 30) << file;
+  }
+}
+
 TEST_F(Consumer, ItsSamplerConvergesOnItsScene) {
   const Ended ended = run("out", {"--scene", "ridge", "--samplers", "independent,r2", "--precision", "f64"});
   ASSERT_EQ(ended.code, 0) << ended.err;
@@ -71,7 +95,8 @@ TEST_F(Consumer, WhatIsNotANumberInvalidatesItsCellsAndNoOthers) {
   const std::string samplers = "halton-owen,r2";
   const Ended torn =
       run("torn", {"--scene", "ridge,torn-ridge,mis-toy", "--samplers", samplers, "--estimators", "mean"});
-  EXPECT_EQ(torn.code, 2);  // mis-toy has no such technique
+  EXPECT_EQ(torn.code, 1);
+  EXPECT_EQ(table("torn", "convergence.csv").size(), 16u);
   const Ended ended = run("out", {"--scene", "ridge,torn-ridge,quarterdisk", "--samplers", samplers, "--seed", "9"});
   EXPECT_EQ(ended.code, 1);
   EXPECT_THAT(ended.err, HasSubstr("of 24 cells are invalid"));

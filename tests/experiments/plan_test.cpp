@@ -112,8 +112,10 @@ TEST(Plan, SaysWhatIsSkippedAndWhy) {
   const Plan veach =
       plan_of({{"scene", "veach-mis"}, {"samplers", "independent"}, {"samples", "4"}, {"resolution", "24,16"}});
   EXPECT_THAT(veach.skips, Contains(HasSubstr("veach-mis: ")));
-  EXPECT_THAT(veach.skips,
-              Contains(HasSubstr("of 384 pixels see only background or what does not reflect: constant, not sampled")));
+  EXPECT_THAT(
+      veach.skips,
+      Contains(HasSubstr("of 384 pixels see only background, what does not reflect or what no light reaches: constant, "
+                         "not sampled")));
   EXPECT_THAT(veach.skips, Contains(HasSubstr("nothing that could come between them and a light: no shadow rays")));
   EXPECT_THAT(veach.skips, Not(Contains(HasSubstr("one light"))));
   EXPECT_THAT(veach.skips, Not(Contains(HasSubstr("closed form"))));
@@ -171,7 +173,34 @@ TEST(Plan, EstimatorsDefaultToAllThatTheSceneHas) {
   const Plan plan = plan_of({{"scene", "mis-toy,quarterdisk"}, {"samplers", "independent"}, {"samples", "4"}});
   std::vector<std::string> names;
   for (const Cell& cell : plan.cells) names.push_back(plan.scenes[cell.scene].estimators[cell.estimator].name);
-  EXPECT_THAT(names, ElementsAre("light", "bsdf", "average", "balance", "power", "mean"));
+  EXPECT_THAT(names, ElementsAre("light", "bsdf", "average", "balance", "power", "cutoff", "maximum", "mean"));
+}
+
+TEST(Plan, OfSeveralScenesEachHasTheEstimatorsAndTheResolutionThatFitIt) {
+  const Plan plan = plan_of({{"scene", "quarterdisk,veach-mis"},
+                             {"estimators", "mean,surface,balance@light+cosine"},
+                             {"resolution", "12,8"},
+                             {"samplers", "independent"},
+                             {"samples", "4"}});
+  ASSERT_EQ(plan.cells.size(), 3u);
+  EXPECT_EQ(plan.scenes[0].estimators.size(), 1u);
+  EXPECT_EQ(plan.scenes[1].estimators.size(), 2u);
+  EXPECT_EQ(plan.scenes[0].source->pixels(), 1);
+  EXPECT_EQ(plan.scenes[1].source->width(), 12);
+  EXPECT_THAT(plan.skips, Contains("quarterdisk: has mean to draw with; left out: surface, balance@light+cosine"));
+  EXPECT_THAT(plan.skips, Contains("veach-mis: has light, bsdf, hemisphere, cosine, surface to draw with; left out: "
+                                   "mean"));
+  // What no scene takes is a mistake.
+  try {
+    plan_of({{"scene", "quarterdisk,veach-mis"},
+             {"estimators", "mean,ballance"},
+             {"samplers", "independent"},
+             {"samples", "4"}});
+    FAIL() << "an estimator that there is not";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::kUsage);
+    EXPECT_THAT(error.what(), HasSubstr("there is no estimator 'ballance' for this scene"));
+  }
 }
 
 TEST(Plan, IsDescribedInLines) {
