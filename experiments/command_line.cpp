@@ -32,6 +32,7 @@ std::string key_help(const std::string& key) {
       {"pixels", "all, or how many to measure (default all)"},
       {"images", "sample counts to write EXRs for, or none (default none)"},
       {"precision", "f32, f64 or both (default f32)"},
+      {"measures", "of the samplers' points, see `halfslope list measures`, or none (default none)"},
   };
   const auto found = kHelp.find(key);
   return found == kHelp.end() ? "" : found->second;
@@ -55,7 +56,8 @@ std::string bash_completion(const CLI::App& app) {
          "  case \"$previous\" in\n"
          "    --sampler|--samplers) words=\"$(halfslope list samplers --names)\" ;;\n"
          "    --scene) words=\"$(halfslope list scenes --names)\" ;;\n"
-         "    list) words=\"samplers estimators scenes statuses\" ;;\n"
+         "    --measures) words=\"$(halfslope list measures --names) none\" ;;\n"
+         "    list) words=\"samplers estimators scenes measures statuses\" ;;\n"
          "    *) case \"${COMP_WORDS[1]}\" in\n" +
          cases + "    *) words=\"" + commands +
          "\" ;;\n    esac ;;\n  esac\n"
@@ -93,8 +95,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
 
   ListArguments list;
   bool names_only = false;
-  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes and statuses");
-  list_app->add_option("what", list.what, "samplers, estimators, scenes or statuses");
+  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes, measures and statuses");
+  list_app->add_option("what", list.what, "samplers, estimators, scenes, measures or statuses");
   list_app->add_flag("--json", list.json, "as JSON");
   list_app->add_flag("--names", names_only, "names alone, a line each");
 

@@ -22,7 +22,7 @@ struct RunArguments {
 int run_command(const RunArguments& arguments, const Catalogue& catalogue);
 
 struct ListArguments {
-  std::string what;  ///< samplers, estimators, scenes, statuses, or empty for all
+  std::string what;  ///< samplers, estimators, scenes, measures, statuses, or empty for all
   bool json = false, names_only = false;
 };
 int list_command(const ListArguments& arguments, const Catalogue& catalogue);

@@ -2,14 +2,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/measures.h"
 #include "core/error.h"
 #include "estimators/estimator.h"
 #include "experiments/commands.h"
 #include "experiments/engine.h"
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
+#include "experiments/joined.h"
 #include "experiments/manifest.h"
 #include "experiments/message.h"
 #include "experiments/tables.h"
@@ -37,6 +40,12 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
     for (const SceneInfo& s : catalogue.scenes()) {
       rows.push_back({s.parameters.empty() ? s.name : s.name + ":" + s.parameters, s.description, s.reference,
                       s.rendered ? "rendered" : "analytic"});
+    }
+  } else if (what == "measures") {
+    for (const MeasureInfo& m : measure_catalogue()) {
+      const bool any = m.max_dims == std::numeric_limits<std::size_t>::max();
+      rows.push_back({m.name, m.description, m.reference,
+                      any ? "any number of dimensions" : fmt::format("at most {} dimensions", m.max_dims)});
     }
   } else {
     rows = {{"ok", "nothing to say against the row's numbers", "", ""},
@@ -73,6 +82,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
                               {"passes", plan.passes.size()},
                               {"units", plan.units.size()},
                               {"evaluations", plan.evaluations()},
+                              {"discrepancies", plan.measures.rows()},
                               {"skipped", plan.skips}}
                              .dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
@@ -85,7 +95,9 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
   if (arguments.json) {
     fmt::print("{}", cells_json(outcome.plan, outcome.results));
   } else if (!arguments.quiet) {
-    fmt::print("{}\nTables and images: {}\n", summary(outcome.plan, outcome.results), out);
+    const std::string measured = measures_summary(outcome.plan.measures, outcome.measured);
+    fmt::print("{}\n{}{}Tables and images: {}\n", summary(outcome.plan, outcome.results), measured,
+               measured.empty() ? "" : "\n", out);
   }
   if (outcome.invalid_cells > 0) {
     message("halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",
@@ -96,10 +108,10 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
 }
 
 int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
-  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "statuses"};
+  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "measures", "statuses"};
   if (!arguments.what.empty() && std::find(kinds.begin(), kinds.end(), arguments.what) == kinds.end()) {
-    fail(ExitCode::kUsage, "there is no list of '{}'{}; allowed: samplers, estimators, scenes, statuses",
-         arguments.what, did_you_mean(arguments.what, kinds));
+    fail(ExitCode::kUsage, "there is no list of '{}'{}; allowed: {}", arguments.what,
+         did_you_mean(arguments.what, kinds), joined(kinds));
   }
   Json json;
   for (const auto& kind : kinds) {

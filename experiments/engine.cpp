@@ -152,6 +152,8 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     message("{}: everything was measured already; the tables are written anew\n", spec.name);
   }
   journal.sync();
+  outcome.measured =
+      measure_points(plan.measures, catalogue.samplers, options.threads, spec.name + ", discrepancy", options.quiet);
 
   AtomicFile replicates_file(folder.path("replicates.csv"));
   ReplicatesTable replicates;
@@ -172,6 +174,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   write_reference_images(folder.path(), plan, references);
   write("rates.csv", rates_csv(plan, outcome.results));
+  write("discrepancy.csv", discrepancy_csv(plan.measures, outcome.measured));
   write("regions.csv", regions_csv(plan, outcome.results));
   write("convergence.csv", convergence_csv(plan, outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
@@ -218,6 +221,7 @@ std::string describe_plan(const Spec& spec, const Plan& plan) {
                         count(scene.pixels.size(), "pixel", "pixels"),
                         count(pass.replicates, "replicate", "replicates"), count(dims, "dimension", "dimensions"));
   }
+  text += describe_measures(plan.measures);
   text += "skipped:\n";
   for (const auto& skip : plan.skips) text += "  " + skip + "\n";
   return text;

@@ -20,6 +20,7 @@ struct RunOptions {
 struct RunOutcome {
   Plan plan;
   Results results;
+  Measurements measured;
   std::size_t invalid_cells = 0;
 };
 

@@ -288,6 +288,9 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   }
   for (std::size_t p = 0; p < plan.passes.size(); ++p) add_units(plan, p);
   note_sharing(plan);
+  const std::size_t before = plan.left_out.size();
+  plan.measures = plan_measures(spec, catalogue.samplers, plan.left_out);
+  plan.skips.insert(plan.skips.end(), plan.left_out.begin() + static_cast<std::ptrdiff_t>(before), plan.left_out.end());
   remove_repeats(plan.skips);
   remove_repeats(plan.left_out);
   return plan;

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "estimators/estimator.h"
 #include "experiments/catalogue.h"
+#include "experiments/measures.h"
 #include "experiments/spec.h"
 
 namespace halfslope {
@@ -65,6 +66,7 @@ struct Plan {
   std::vector<Pass> passes;
   std::vector<Unit> units;
   std::vector<Cell> cells;            ///< in the order of the tables
+  MeasuresPlan measures;              ///< of the samplers' points
   std::vector<std::string> skips;     ///< what is not done, and why
   std::vector<std::string> left_out;  ///< those of them that take something from the tables
   double evaluations() const;         ///< integrand evaluations of all units

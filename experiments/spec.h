@@ -35,6 +35,7 @@ struct Spec {
   std::optional<std::int64_t> pixels;            ///< a fixed, stratified choice of so many; all where absent
   std::vector<std::uint64_t> images;             ///< sample counts to write EXRs for
   std::vector<Precision> precision = {Precision::kF32};
+  std::vector<std::string> measures;  ///< of the points that the samplers gave; in the order of measure_catalogue()
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <limits>
 
+#include "analysis/measures.h"
 #include "core/assertion.h"
 #include "experiments/joined.h"
 
@@ -31,8 +32,8 @@ std::string described(const SpecItem& item) {
 // A flag's place is the key already; a file's place is a position and the key is still to be named.
 [[noreturn]] void refuse(const Key& key, const SpecValue& value, const std::string& place, const std::string& problem) {
   const bool flag = value.code == ExitCode::kUsage;
-  fail(value.code, "{}: {}{}; allowed: {}", place, flag ? "" : fmt::format("key '{}': ", key.name), problem,
-       key.allowed);
+  fail(value.code, "{}: {}{}{} allowed: {}", place, flag ? "" : fmt::format("key '{}': ", key.name), problem,
+       problem.ends_with('?') ? "" : ";", key.allowed);
 }
 
 [[noreturn]] void refuse(const Key& key, const SpecValue& value, const SpecItem& item) {
@@ -147,6 +148,24 @@ void set_precision(Spec& spec, const Key& key, const SpecValue& value) {
   spec.precision = std::move(list);
 }
 
+// They come out in the catalogue's order, so that the same measures are the same experiment.
+void set_measures(Spec& spec, const Key& key, const SpecValue& value) {
+  if (value.items.empty()) refuse(key, value, value.place, "found an empty list");
+  const std::vector<std::string> known = measure_names();
+  std::vector<std::string> list;
+  if (value.is_list || value.items[0].text != "none") {
+    for (const SpecItem& item : value.items) {
+      const std::string& name = text(key, value, item);
+      if (std::find(known.begin(), known.end(), name) == known.end())
+        refuse(key, value, item.place, fmt::format("there is no measure '{}'{}", name, did_you_mean(name, known)));
+      append_unique(key, value, item, list, name);
+    }
+  }
+  spec.measures.clear();
+  for (const std::string& name : known)
+    if (std::find(list.begin(), list.end(), name) != list.end()) spec.measures.push_back(name);
+}
+
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its
 // part in canonical_json.
 const std::vector<Key>& keys() {
@@ -172,6 +191,7 @@ const std::vector<Key>& keys() {
       {"pixels", "'all' or an integer from 1 to 2^32", false, set_pixels},
       {"images", "one or several different counts that are among the samples, or 'none'", true, set_images},
       {"precision", "f32, f64, or a list of both", true, set_precision},
+      {"measures", fmt::format("{}, a list of different ones, or 'none'", joined(measure_names())), true, set_measures},
   };
   return table;
 }

@@ -3,6 +3,7 @@
 
 #include "core/error.h"
 #include "experiments/tables.h"
+#include "experiments/text_table.h"
 
 namespace halfslope {
 namespace {
@@ -16,25 +17,6 @@ std::string between(const std::optional<double>& lo, const std::optional<double>
 template <class Count>
 std::string counted(Count count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
-// Columns as wide as their widest cell; the first `left` of them flush left.
-std::string align(const std::vector<std::vector<std::string>>& rows, std::size_t left) {
-  std::vector<std::size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    std::string line = " ";
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      line += i < left ? fmt::format(" {:<{}}", row[i], widths[i]) : fmt::format("  {:>{}}", row[i], widths[i]);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    text += line + "\n";
-  }
-  return text;
 }
 
 const RegionResult* find_region(const CellResult& cell, const std::string& name) {

@@ -1,0 +1,158 @@
+#include "experiments/measures.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/csv.h"
+#include "core/error.h"
+#include "core/point_block.h"
+#include "experiments/interrupt.h"
+#include "experiments/measures_layout.h"
+#include "experiments/parallel.h"
+#include "experiments/progress.h"
+
+namespace halfslope {
+namespace {
+
+// Replicates travel in lanes, and all lanes of small sets are kept; of large ones fewer, so that a thread holds no more
+// than so many points, or one set.
+constexpr std::uint64_t kPointsHeld = std::uint64_t{1} << 18;
+constexpr int kBlock = 256;
+
+/// Some replicates of a sampler's points at one N; of a sequence, at every N.
+struct Task {
+  std::size_t points;
+  std::size_t first_count, end_count;  ///< positions in its counts
+  std::int64_t first_replicate;
+  int replicates;
+};
+
+std::vector<Task> tasks_of(const MeasuresPlan& plan) {
+  std::vector<Task> tasks;
+  for (std::size_t p = 0; p < plan.points.size(); ++p) {
+    const MeasuredPoints& points = plan.points[p];
+    for (std::size_t first = 0; first < points.counts.size();) {
+      const std::size_t end = points.sequence ? points.counts.size() : first + 1;
+      const auto lanes = static_cast<int>(std::clamp<std::uint64_t>(kPointsHeld / points.counts[end - 1], 1, kLanes));
+      for (std::int64_t r = 0; r < points.replicates; r += lanes) {
+        const auto replicates = static_cast<int>(std::min<std::int64_t>(lanes, points.replicates - r));
+        tasks.push_back({p, first, end, r, replicates});
+      }
+      first = end;
+    }
+  }
+  return tasks;
+}
+
+/// Coordinates of several replicates, each dimension of each in one piece.
+class Columns {
+ public:
+  Columns(Sampler& sampler, const MeasuredPoints& points, const Task& task)
+      : count_(points.counts[task.end_count - 1]),
+        values_(count_ * static_cast<std::size_t>(task.replicates) * dims()) {
+    sampler.prepare({count_, &kPair, points.key, 0, static_cast<std::uint32_t>(task.first_replicate), true});
+    PointBlock block;
+    for (std::uint64_t begin = 0; begin < count_ && !interrupted(); begin += kBlock) {
+      block.reset(kPair.dims(), static_cast<int>(std::min<std::uint64_t>(kBlock, count_ - begin)), true);
+      sampler.fill(begin, block);
+      for (int lane = 0; lane < task.replicates; ++lane) {
+        for (int d = 0; d < kPair.dims(); ++d) {
+          double* to = values_.data() + at(lane, d) + begin;
+          for (int s = 0; s < block.samples(); ++s) to[s] = block.coordinate(d, s, lane);
+        }
+      }
+    }
+  }
+  /// The first `count` points of a replicate.
+  PointSet prefix(int lane, std::uint64_t count) const {
+    std::vector<std::span<const double>> columns;
+    for (int d = 0; d < kPair.dims(); ++d) columns.emplace_back(values_.data() + at(lane, d), count);
+    return PointSet(std::move(columns));
+  }
+
+ private:
+  static std::size_t dims() { return static_cast<std::size_t>(kPair.dims()); }
+  std::size_t at(int lane, int dim) const {
+    return (static_cast<std::size_t>(lane) * dims() + static_cast<std::size_t>(dim)) * count_;
+  }
+
+  std::size_t count_;
+  std::vector<double> values_;
+};
+
+/// Where the rows of each sampler's points begin.
+std::vector<std::size_t> first_rows(const MeasuresPlan& plan) {
+  std::vector<std::size_t> rows = {0};
+  for (const MeasuredPoints& p : plan.points)
+    rows.push_back(rows.back() + p.counts.size() * static_cast<std::size_t>(p.replicates) * plan.measures.size());
+  return rows;
+}
+
+void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const Task& task,
+             std::span<MeasuredValue> rows, Progress& progress) {
+  const MeasuredPoints& points = plan.points[task.points];
+  const Columns columns(*samplers.make(points.sampler), points, task);
+  for (std::size_t n = task.first_count; n < task.end_count; ++n) {
+    for (int lane = 0; lane < task.replicates && !interrupted(); ++lane) {
+      const PointSet set = columns.prefix(lane, points.counts[n]);
+      const auto replicate = static_cast<std::size_t>(task.first_replicate + lane);
+      const std::size_t row = n * static_cast<std::size_t>(points.replicates) + replicate;
+      for (std::size_t m = 0; m < plan.measures.size(); ++m)
+        rows[row * plan.measures.size() + m] = plan.measures[m]->measure(set);
+      progress.advance(static_cast<double>(points.counts[n]));
+    }
+  }
+}
+
+double points_in_all(const MeasuresPlan& plan) {
+  double sum = 0;
+  for (const MeasuredPoints& p : plan.points) {
+    for (const std::uint64_t count : p.counts) sum += static_cast<double>(count) * static_cast<double>(p.replicates);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& samplers, int threads,
+                            const std::string& label, bool quiet) {
+  Measurements measured(plan.rows());
+  if (measured.empty()) return measured;
+  const std::vector<Task> tasks = tasks_of(plan);
+  const std::vector<std::size_t> rows = first_rows(plan);
+  Progress progress(label, points_in_all(plan), quiet);
+  with_threads(threads, [&](int) {
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+      if (interrupted()) return;
+      const std::size_t p = tasks[t].points;
+      measure(plan, samplers, tasks[t], std::span(measured).subspan(rows[p], rows[p + 1] - rows[p]), progress);
+    });
+  });
+  if (interrupted()) {
+    fail(ExitCode::kInterrupted,
+         "interrupted while the samplers' points were measured; everything else is done: run the same command again to "
+         "go on");
+  }
+  progress.finish();
+  return measured;
+}
+
+std::string discrepancy_csv(const MeasuresPlan& plan, const Measurements& measured) {
+  if (plan.measures.empty()) return "";
+  CsvWriter csv({"sampler", "dims", "count", "replicate", "measure", "value", "lower", "upper", "method"});
+  auto row = measured.begin();
+  for (const MeasuredPoints& p : plan.points) {
+    for (const std::uint64_t count : p.counts) {
+      for (std::int64_t r = 0; r < p.replicates; ++r) {
+        for (const MeasureInfo* info : plan.measures) {
+          csv.row(p.sampler, kPair.dims(), count, r, info->name, row->value, row->lower, row->upper, row->method);
+          ++row;
+        }
+      }
+    }
+  }
+  return csv.text();
+}
+
+}  // namespace halfslope

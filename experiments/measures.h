@@ -1,0 +1,54 @@
+// The measures of an experiment: discrepancies of the points that its samplers gave.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/measures.h"
+#include "core/random.h"
+#include "experiments/spec.h"
+#include "samplers/catalogue.h"
+
+namespace halfslope {
+
+/// The points of one sampler that are measured: those of pixel 0 of a layout of one pair, in binary64, as `halfslope
+/// points` prints them.
+struct MeasuredPoints {
+  std::string sampler;
+  bool sequence = false;              ///< smaller N are prefixes of the largest; else each N has points of its own
+  std::vector<std::uint64_t> counts;  ///< N, ascending, all legal
+  std::int64_t replicates = 1;
+  StreamKey key;
+};
+
+struct MeasuresPlan {
+  std::vector<const MeasureInfo*> measures;  ///< in the catalogue's order; none: nothing is measured
+  std::vector<MeasuredPoints> points;        ///< in the experiment's order of samplers
+
+  std::size_t rows() const;  ///< of discrepancy.csv
+};
+
+/// What the spec's measures take, and a line in `left_out` for each thing that they leave out: samplers without pairs,
+/// N that a sampler's pairs cannot have, N above 2²⁰, replicates above 4096.
+MeasuresPlan plan_measures(const Spec& spec, const SamplerCatalogue& samplers, std::vector<std::string>& left_out);
+
+/// Lines of --dry-run: what will be measured.
+std::string describe_measures(const MeasuresPlan& plan);
+
+/// The rows of discrepancy.csv in its order: the plan's points, N, replicate, measure.
+using Measurements = std::vector<MeasuredValue>;
+
+/// Makes the points and measures them in parallel; the values depend on the plan alone. `label` is shown with the
+/// progress, unless `quiet`. Throws Error(kInterrupted) if a signal comes meanwhile.
+Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& samplers, int threads,
+                            const std::string& label, bool quiet);
+
+/// discrepancy.csv; empty where nothing was to be measured.
+std::string discrepancy_csv(const MeasuresPlan& plan, const Measurements& measured);
+
+/// For people: each sampler's largest N, means over replicates. Empty where nothing was measured.
+std::string measures_summary(const MeasuresPlan& plan, const Measurements& measured);
+
+}  // namespace halfslope
