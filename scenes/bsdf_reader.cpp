@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -66,12 +67,51 @@ Bsdf read_rough_conductor(Properties& properties) {
   return bsdf;
 }
 
+/// A reflectance under Mitsuba 3's spelling or Mitsuba 0.6's.
+struct NamedColour {
+  std::string name;  ///< the one that is given
+  Rgb colour;
+};
+
+NamedColour read_either(Properties& properties, const std::string& snake, const std::string& camel, double absent) {
+  const auto by_snake = properties.colour(snake), by_camel = properties.colour(camel);
+  if (by_snake && by_camel) properties.reject(camel, fmt::format("given beside {}", snake), "one or the other");
+  if (by_camel) return {camel, *by_camel};
+  return {snake, by_snake.value_or(Rgb::Constant(absent))};
+}
+
+/// Mitsuba 0.6's phong, with its defaults. It would scale a sum of reflectances above 1 down without a word.
+Bsdf read_phong(Properties& properties) {
+  Bsdf bsdf;
+  bsdf.kind = BsdfKind::kPhong;
+  const auto diffuse = read_either(properties, "diffuse_reflectance", "diffuseReflectance", 0.5);
+  const auto specular = read_either(properties, "specular_reflectance", "specularReflectance", 0.2);
+  bsdf.exponent = properties.number("exponent").value_or(30);
+  properties.finish();
+  check_albedo(properties, diffuse.name, diffuse.colour);
+  check_albedo(properties, specular.name, specular.colour);
+  if (!(bsdf.exponent >= 0)) properties.reject("exponent", fmt::format("{}", bsdf.exponent), "0 or more");
+  const Rgb sum = diffuse.colour + specular.colour;
+  if (const double most = sum.maxCoeff(); most > 1 + 1e-9) {  // decimals that add up to 1 may round to more
+    properties.reject(
+        specular.name,
+        fmt::format("({}, {}, {}), which with {} ({}, {}, {}) sums to {}", specular.colour[0], specular.colour[1],
+                    specular.colour[2], diffuse.name, diffuse.colour[0], diffuse.colour[1], diffuse.colour[2], most),
+        fmt::format("a sum up to 1 in each channel: divide both by {}", most));
+  }
+  bsdf.reflectance = diffuse.colour;
+  bsdf.specular = specular.colour;
+  return bsdf;
+}
+
 }  // namespace
 
 Bsdf read_bsdf(const Element& element) {
   const std::string type = element.attribute("type");
-  if (type != "diffuse" && type != "roughconductor") element.unknown("bsdf", type, {"diffuse", "roughconductor"});
+  const std::vector<std::string> types = {"diffuse", "roughconductor", "phong"};
+  if (std::find(types.begin(), types.end(), type) == types.end()) element.unknown("bsdf", type, types);
   Properties properties(element, {});
+  if (type == "phong") return read_phong(properties);
   if (type == "roughconductor") return read_rough_conductor(properties);
   Bsdf bsdf;
   bsdf.reflectance = properties.colour("reflectance").value_or(Rgb::Constant(0.5));

@@ -9,10 +9,10 @@
 
 namespace halfslope {
 
-/// <bsdf>: diffuse, or roughconductor with distribution ggx.
+/// <bsdf>: diffuse, phong, or roughconductor with distribution ggx.
 Bsdf read_bsdf(const Element& bsdf);
 
-/// <shape>: sphere or rectangle, with its bsdf (or a <ref> to one of `bsdfs`, by id) and area emitter. `position`
+/// <shape>: sphere, rectangle or disk, with its bsdf (or a <ref> to one of `bsdfs`, by id) and area emitter. `position`
 /// counts the shapes from 1 and names the one that has no id.
 Primitive read_shape(const Element& shape, const std::map<std::string, Bsdf>& bsdfs, std::size_t position);
 

@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -35,29 +36,35 @@ Sphere read_sphere(Properties& properties) {
   return sphere;
 }
 
-Flat read_rectangle(Properties& properties) {
-  Flat rectangle;
+Flat read_flat(Properties& properties, Flat::Outline outline) {
+  Flat flat;
+  flat.outline = outline;
+  const bool disk = outline == Flat::Outline::kDisk;
   const Eigen::Matrix4d to_world = properties.transform("to_world").value_or(Eigen::Matrix4d::Identity());
   const bool flip_normals = properties.boolean("flip_normals").value_or(false);
   properties.finish();
-  rectangle.half_u = to_world.block<3, 1>(0, 0);
-  rectangle.half_v = to_world.block<3, 1>(0, 1);
-  rectangle.center = to_world.block<3, 1>(0, 3);
+  flat.half_u = to_world.block<3, 1>(0, 0);
+  flat.half_v = to_world.block<3, 1>(0, 1);
+  flat.center = to_world.block<3, 1>(0, 3);
 
-  const double length_u = rectangle.half_u.norm(), length_v = rectangle.half_v.norm();
-  const Vec3 cross = rectangle.half_u.cross(rectangle.half_v);
-  // Normals go by the inverse transpose, whose third column is u × v / det: a mirrored rectangle keeps its front on the
+  const double length_u = flat.half_u.norm(), length_v = flat.half_v.norm();
+  const Vec3 cross = flat.half_u.cross(flat.half_v);
+  // Normals go by the inverse transpose, whose third column is u × v / det: a mirrored shape keeps its front on the
   // side to which +z is taken.
   const double determinant = cross.dot(to_world.block<3, 1>(0, 2));
   if (!(length_u > 0 && length_v > 0 && determinant != 0 && cross.norm() > 0) || !to_world.allFinite() ||
       !std::isfinite(determinant)) {
-    properties.reject("to_world", "degenerate", "a matrix with a finite inverse, which leaves the rectangle its area");
+    properties.reject(
+        "to_world", "degenerate",
+        fmt::format("a matrix with a finite inverse, which leaves the {} its area", disk ? "disk" : "rectangle"));
   }
-  if (!(std::abs(rectangle.half_u.dot(rectangle.half_v)) <= kAngleTolerance * length_u * length_v)) {
-    properties.reject("to_world", "a shear", "transforms that keep the rectangle's sides perpendicular");
+  if (!(std::abs(flat.half_u.dot(flat.half_v)) <= kAngleTolerance * length_u * length_v)) {
+    properties.reject(
+        "to_world", "a shear",
+        fmt::format("transforms that keep the {} perpendicular", disk ? "disk's axes" : "rectangle's sides"));
   }
-  rectangle.normal = ((determinant < 0) != flip_normals ? -1.0 : 1.0) * cross.normalized();
-  return rectangle;
+  flat.normal = ((determinant < 0) != flip_normals ? -1.0 : 1.0) * cross.normalized();
+  return flat;
 }
 
 Rgb read_area_emitter(const Element& element) {
@@ -88,14 +95,15 @@ Bsdf find_bsdf(const Element& reference, const std::map<std::string, Bsdf>& bsdf
 
 Primitive read_shape(const Element& shape, const std::map<std::string, Bsdf>& bsdfs, std::size_t position) {
   const std::string type = shape.attribute("type");
-  if (type != "sphere" && type != "rectangle") shape.unknown("shape", type, {"sphere", "rectangle"});
+  const std::vector<std::string> types = {"sphere", "rectangle", "disk"};
+  if (std::find(types.begin(), types.end(), type) == types.end()) shape.unknown("shape", type, types);
   Properties properties(shape, {"bsdf", "ref", "emitter"});
   Primitive primitive;
   primitive.id = shape.find("id").value_or(fmt::format("shape{}", position));
   if (type == "sphere") {
     primitive.shape = read_sphere(properties);
   } else {
-    primitive.shape = read_rectangle(properties);
+    primitive.shape = read_flat(properties, type == "disk" ? Flat::Outline::kDisk : Flat::Outline::kRectangle);
   }
   const auto emitter = properties.object("emitter"), bsdf = properties.object("bsdf"), ref = properties.object("ref");
   if (bsdf && ref) ref->error("a <ref> beside a <bsdf> in one shape, allowed: one or the other");

@@ -89,7 +89,17 @@ INSTANTIATE_TEST_SUITE_P(File, LoaderErrors, testing::ValuesIn(kFile), name_of);
 
 const std::vector<Wrong> kShape = {
     {"Type", scene("<shape type='spere'/>"),
-     "wrong.xml:3: unknown shape 'spere', allowed: sphere, rectangle; did you mean 'sphere'?"},
+     "wrong.xml:3: unknown shape 'spere', allowed: sphere, rectangle, disk; did you mean 'sphere'?"},
+    {"NearDisk", scene("<shape type='disc'/>"),
+     "wrong.xml:3: unknown shape 'disc', allowed: sphere, rectangle, disk; did you mean 'disk'?"},
+    {"ShearedDisk",
+     scene("<shape type='disk'>\n<transform name='to_world'><matrix value='1 1 0  0 1 0  0 0 1'/></transform></shape>"),
+     "wrong.xml:4: 'to_world' of shape 'disk' is a shear, allowed: transforms that keep the disk's axes perpendicular"},
+    {"FlatDisk", scene("<shape type='disk'><transform name='to_world'>\n<scale x='0'/></transform></shape>"),
+     "wrong.xml:3: 'to_world' of shape 'disk' is degenerate, allowed: a matrix with a finite inverse, which leaves the "
+     "disk its area"},
+    {"DiskRadius", scene("<shape type='disk'><float name='radius' value='2'/></shape>"),
+     "wrong.xml:3: unknown property of shape 'disk' 'radius', allowed: to_world, flip_normals"},
     {"NoType", scene("<shape/>"), "wrong.xml:3: <shape> has no attribute 'type'"},
     {"Attribute", scene("<shape type='sphere' ID='a'/>"),
      "wrong.xml:3: unknown attribute of <shape> 'ID', allowed: type, id, name"},
@@ -163,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(Shape, LoaderErrors, testing::ValuesIn(kShape), name_of
 
 const std::vector<Wrong> kBsdf = {
     {"Type", bsdf("difuse", ""),
-     "wrong.xml:3: unknown bsdf 'difuse', allowed: diffuse, roughconductor; did you mean 'diffuse'?"},
+     "wrong.xml:3: unknown bsdf 'difuse', allowed: diffuse, roughconductor, phong; did you mean 'diffuse'?"},
     {"Reflectance", bsdf("diffuse", "<rgb name='reflectance' value='0 0 1.5'/>"),
      "wrong.xml:3: 'reflectance' of bsdf 'diffuse' is (0, 0, 1.5), allowed: from 0 to 1 in each channel"},
     {"Texture", bsdf("diffuse", "<texture type='bitmap' name='reflectance'/>"),
@@ -208,6 +218,28 @@ const std::vector<Wrong> kBsdf = {
     {"Property", ggx("<float name='alhpa' value='0.1'/>"),
      "wrong.xml:3: unknown property of bsdf 'roughconductor' 'alhpa', allowed: distribution, sample_visible, "
      "specular_reflectance, material, eta, k, alpha, alpha_u, alpha_v; did you mean 'alpha'?"},
+    {"NearPhong", bsdf("pong", ""),
+     "wrong.xml:3: unknown bsdf 'pong', allowed: diffuse, roughconductor, phong; did you mean 'phong'?"},
+    {"Exponent", bsdf("phong", "\n<float name='exponent' value='-1'/>"),
+     "wrong.xml:4: 'exponent' of bsdf 'phong' is -1, allowed: 0 or more"},
+    {"InfiniteExponent", bsdf("phong", "\n<float name='exponent' value='inf'/>"),
+     "wrong.xml:4: attribute 'value' of <float> is 'inf', allowed: 1 finite number"},
+    {"BothSpellings",
+     bsdf("phong", "<float name='specular_reflectance' value='0.1'/>\n<float name='specularReflectance' value='0.1'/>"),
+     "wrong.xml:4: 'specularReflectance' of bsdf 'phong' is given beside specular_reflectance, allowed: one or the "
+     "other"},
+    {"NegativeSpecular", bsdf("phong", "<rgb name='specularReflectance' value='0 -0.1 0'/>"),
+     "wrong.xml:3: 'specularReflectance' of bsdf 'phong' is (0, -0.1, 0), allowed: from 0 to 1 in each channel"},
+    {"TooMuchDiffuse", bsdf("phong", "<rgb name='diffuse_reflectance' value='1.5'/>"),
+     "wrong.xml:3: 'diffuse_reflectance' of bsdf 'phong' is (1.5, 1.5, 1.5), allowed: from 0 to 1 in each channel"},
+    {"TooMuchInAll",
+     bsdf("phong",
+          "<float name='diffuseReflectance' value='0.5'/>\n<rgb name='specularReflectance' value='0.1 0.75 0'/>"),
+     "wrong.xml:4: 'specularReflectance' of bsdf 'phong' is (0.1, 0.75, 0), which with diffuseReflectance (0.5, 0.5, "
+     "0.5) sums to 1.25, allowed: a sum up to 1 in each channel: divide both by 1.25"},
+    {"PhongProperty", bsdf("phong", "<float name='exponet' value='3'/>"),
+     "wrong.xml:3: unknown property of bsdf 'phong' 'exponet', allowed: diffuse_reflectance, diffuseReflectance, "
+     "specular_reflectance, specularReflectance, exponent; did you mean 'exponent'?"},
 };
 INSTANTIATE_TEST_SUITE_P(Bsdf, LoaderErrors, testing::ValuesIn(kBsdf), name_of);
 

@@ -197,6 +197,41 @@ TEST(Loader, RoughConductor) {
   EXPECT_TRUE((gold.reflectance == 0.9).all());
 }
 
+TEST(Loader, Disk) {
+  const auto plain = std::get<Flat>(shape("<shape type='disk'/>").shape);  // Mitsuba's: radius 1, front towards +z
+  EXPECT_EQ(plain.outline, Flat::Outline::kDisk);
+  expect_vector(plain.half_u, Vec3::UnitX(), 0);
+  expect_vector(plain.half_v, Vec3::UnitY(), 0);
+  expect_vector(plain.normal, Vec3::UnitZ(), 0);
+  EXPECT_EQ(std::get<Flat>(shape("<shape type='rectangle'/>").shape).outline, Flat::Outline::kRectangle);
+  const auto ellipse = std::get<Flat>(
+      shape("<shape type='disk'><transform name='to_world'><scale x='3' y='2'/><rotate x='1' angle='-90'/>"
+            "<translate y='-1'/></transform><boolean name='flip_normals' value='true'/></shape>")
+          .shape);
+  expect_vector(ellipse.center, Vec3(0, -1, 0), 0);
+  expect_vector(ellipse.half_u, Vec3(3, 0, 0), 0);
+  expect_vector(ellipse.half_v, Vec3(0, 0, -2), 0);
+  expect_vector(ellipse.normal, -Vec3::UnitY(), 0);
+}
+
+TEST(Loader, Phong) {
+  const Bsdf plain = bsdf("<bsdf type='phong'/>");  // Mitsuba 0.6's defaults
+  EXPECT_EQ(plain.kind, BsdfKind::kPhong);
+  EXPECT_EQ(plain.exponent, 30);
+  EXPECT_TRUE((plain.reflectance == 0.5).all());
+  EXPECT_TRUE((plain.specular == 0.2).all());
+  for (const auto& [diffuse, specular] : {std::pair("diffuse_reflectance", "specular_reflectance"),
+                                          std::pair("diffuseReflectance", "specularReflectance")}) {
+    const Bsdf given =
+        bsdf(fmt::format("<bsdf type='phong'><rgb name='{}' value='0.3 0.2 0.1'/><spectrum name='{}' value='0.7'/>"
+                         "<integer name='exponent' value='0'/></bsdf>",
+                         diffuse, specular));
+    EXPECT_TRUE((given.reflectance == Rgb(0.3, 0.2, 0.1)).all());
+    EXPECT_TRUE((given.specular == 0.7).all());
+    EXPECT_EQ(given.exponent, 0);
+  }
+}
+
 TEST(Loader, ReferencesFindBsdfsBeforeAndAfter) {
   const Scene scene = load(
       "<shape type='sphere'><ref id='late'/></shape>"
