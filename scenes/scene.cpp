@@ -6,22 +6,21 @@
 #include <numbers>
 
 #include "core/assertion.h"
+#include "scenes/intersection.h"
 
 namespace halfslope {
 namespace {
 
 constexpr double kNoHit = std::numeric_limits<double>::infinity();
 
-/// The smallest t > 0 with |o + t d − c| = R, or kNoHit.
-///
-/// With b = (o − c)·d and l = (o − c) − b d, the vector to the line's closest approach, the half chord is √(R² − |l|²):
-/// b² − |o − c|² + R² would cancel for small or distant spheres (Haines et al., "Precision Improvements for Ray/Sphere
-/// Intersection", Ray Tracing Gems, 2019). The root of the smaller magnitude is the product of both over the other.
+Vec<double> plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+/// The smallest t > 0 with |o + t d − c| = R, or kNoHit. The root of the smaller magnitude is the product of both over
+/// the other.
 double hit_sphere(const Sphere& sphere, const Ray& ray) {
   const Vec3 from_center = ray.origin - sphere.center;
   const double b = from_center.dot(ray.direction);
-  const double closest = (from_center - b * ray.direction).norm();
-  const double discriminant = (sphere.radius - closest) * (sphere.radius + closest);
+  const double discriminant = half_chord_squared(plain(from_center), plain(ray.direction), b, sphere.radius);
   if (!(discriminant >= 0)) return kNoHit;
   const double half_chord = std::sqrt(discriminant), distance = from_center.norm();
   const double product = (distance - sphere.radius) * (distance + sphere.radius);
@@ -104,6 +103,19 @@ double area(const Primitive& primitive, double scale) {
   const auto& flat = std::get<Flat>(primitive.shape);
   const double square = (scale * flat.half_u).norm() * (scale * flat.half_v).norm();
   return (flat.outline == Flat::Outline::kDisk ? std::numbers::pi : 4) * square;
+}
+
+Vec3 leave_surface(const Primitive& primitive, const Hit& hit) {
+  const auto largest = [](const Vec3& v) { return v.cwiseAbs().maxCoeff(); };
+  double reach = largest(hit.position);
+  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
+    reach = std::max({reach, largest(sphere->center), sphere->radius});
+  } else {
+    const auto& flat = std::get<Flat>(primitive.shape);
+    reach = std::max({reach, largest(flat.center), largest(flat.half_u), largest(flat.half_v)});
+  }
+  const double step = 16 * std::numeric_limits<double>::epsilon() * reach;
+  return hit.position + (hit.front ? step : -step) * hit.normal;
 }
 
 bool is_black(const Bsdf& bsdf) {

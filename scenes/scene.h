@@ -85,6 +85,11 @@ struct Hit {
 /// the closest approach; the hit point projected back onto the shape).
 Hit first_hit(const Scene& scene, const Ray& ray);
 
+/// Where a ray that goes on from `hit`, on the side it came from, may start: the hit point moved along the normal by 16
+/// roundings of the largest coordinate that made it, so that it is off the surface however far from the origin that
+/// lies (a fixed offset would be lost there, or show elsewhere).
+Vec3 leave_surface(const Primitive& primitive, const Hit& hit);
+
 /// Of one side, with every length multiplied by `scale` first: the squares of the file's may leave binary64.
 double area(const Primitive& primitive, double scale = 1);
 

@@ -6,11 +6,16 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
 
+#include "scenes/closed_form.h"
 #include "scenes/ggx.h"
+#include "scenes/intersection.h"
 #include "scenes/measure.h"
+#include "scenes/phong.h"
 #include "scenes/solid_angle.h"
+#include "scenes/warp.h"
 
 namespace halfslope {
 namespace {
@@ -40,6 +45,26 @@ F evaluate(const json& entry) {
   if (function == "ggx_d") return ggx_d(in("alpha"), in("cos_h"));
   if (function == "ggx_lambda") return ggx_lambda(in("alpha"), in("cos"));
   if (function == "ggx_g1_over_cos") return ggx_g1_over_cos(in("alpha"), in("cos"));
+  if (function == "phong_lobe_pdf") {
+    const F sine = std::sin(in("theta"));
+    return phong_lobe_pdf(in("n"), sine * sine);
+  }
+  if (function == "phong_sample_sin") return sample_phong_angle(in("n"), F(1) - in("u")).sin;  // u is (cos α)^(n+1)
+  if (function == "cosine_hemisphere_z") {
+    return cosine_hemisphere(in("u"), in("phi") / (2 * std::numbers::pi_v<F>)).z;
+  }
+  if (function == "sphere_discriminant") {  // b² − 4ac
+    const Vec<F> from_center = {in("off"), F(0), -in("o")}, direction = {F(0), F(0), F(1)};
+    return 4 * half_chord_squared(from_center, direction, dot(from_center, direction), in("r"));
+  }
+  if (function == "polygon_form_factor") {  // in binary64 alone
+    std::vector<Vec3> vertices;
+    for (const json& input : inputs) {
+      const std::vector<double> vertex = input;
+      vertices.emplace_back(vertex.at(0), vertex.at(1), vertex.at(2));
+    }
+    return static_cast<F>(polygon_form_factor(vertices));
+  }
   if (function == "ggx_visible_normal_pdf") return ggx_visible_normal_pdf(in("alpha"), vec("w"), vec("h"));
   throw std::runtime_error("no function " + function);
 }

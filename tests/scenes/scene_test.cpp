@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace halfslope {
 namespace {
@@ -116,6 +118,67 @@ TEST(FirstHit, RectangleEdgesAndSides) {
   EXPECT_EQ(first_hit(scene, {Vec3(0, 0, 8), Vec3::UnitZ()}).primitive, -1);
   EXPECT_EQ(first_hit(scene, {Vec3(-9, 0, 4), Vec3::UnitX()}).primitive, -1);  // within its plane
   EXPECT_EQ(first_hit(scene, {Vec3(0, 0, 3), Vec3::UnitX()}).primitive, -1);   // parallel to it
+}
+
+TEST(FirstHit, DiskAndEllipseHaveRoundRims) {
+  Flat ellipse;
+  ellipse.outline = Flat::Outline::kDisk;
+  ellipse.center = Vec3(1, 0, 4);
+  ellipse.half_u = Vec3(3, 0, 0);
+  ellipse.half_v = Vec3(0, 0.5, 0);
+  const Scene scene = scene_of(ellipse);
+  const auto along_z = [&](double x, double y) { return first_hit(scene, {Vec3(x, y, 0), Vec3::UnitZ()}).primitive; };
+  for (const double phi : {0.0, 0.5, 1.5, 3.0, 4.4}) {
+    EXPECT_EQ(along_z(1 + 2.999 * std::cos(phi), 0.4999 * std::sin(phi)), 0);
+    EXPECT_EQ(along_z(1 + 3.001 * std::cos(phi), 0.5001 * std::sin(phi)), -1);
+  }
+  EXPECT_NEAR(area(scene.primitives[0]), std::numbers::pi * 1.5, 1e-15);
+}
+
+/// Directions all over the sphere, the nearest to grazing 1e-4 off the plane of `normal`.
+std::vector<Vec3> directions_on(const Vec3& normal) {
+  std::vector<Vec3> directions;
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  for (const double z : {1e-4, 1e-2, 0.3, 0.9}) {
+    for (int k = 0; k < 16; ++k) {
+      const double phi = k * std::numbers::pi / 8, r = std::sqrt(1 - z * z);
+      directions.push_back(r * std::cos(phi) * u + r * std::sin(phi) * v + z * normal);
+    }
+  }
+  return directions;
+}
+
+TEST(LeaveSurface, RaysDoNotMeetTheSurfaceThatTheyLeave) {
+  // A ray's end loses more than 1e-5 to rounding at 1e6 in binary32, and 1e-10 in binary64: no offset fits everywhere.
+  const Vec3 normal = Vec3(1, 2, -2) / 3, u = Vec3(2, 1, 2) / 3, v = Vec3(2, -2, -1) / 3;
+  for (const double reach : {1e-6, 1.0, 1e6, 1e12}) {
+    Flat flat;
+    flat.center = reach * Vec3(0.8, -1, 0.9), flat.half_u = reach * u, flat.half_v = 0.3 * reach * v;
+    flat.normal = normal;
+    const Sphere ball{.center = flat.center, .radius = 1e-3 * reach, .flip_normals = false};
+    for (const Scene& scene : {scene_of(flat), scene_of(ball)}) {
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 aim = flat.center + 1e-4 * reach * Vec3(std::sin(7.0 * i), std::cos(3.0 * i), std::sin(i + 1.0));
+        const Vec3 from = aim + reach * (i % 2 ? 1 : -1) * Vec3(0.3, 0.9, -0.5 + 0.001 * i);
+        const Hit hit = first_hit(scene, {from, (aim - from).normalized()});
+        ASSERT_EQ(hit.primitive, 0);
+        const Vec3 side = hit.front ? hit.normal : Vec3(-hit.normal);
+        const Vec3 start = leave_surface(scene.primitives[0], hit);
+        EXPECT_LE((start - hit.position).norm(), 1e-14 * reach);
+        for (const Vec3& direction : directions_on(side)) {
+          ASSERT_EQ(first_hit(scene, {start, direction}).primitive, -1) << reach << ' ' << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(LeaveSurface, TheInsideOfASphereIsStillThere) {
+  const Scene scene = scene_of(Sphere{.center = Vec3(1e6, 0, 0), .radius = 2, .flip_normals = true});
+  const Hit hit = first_hit(scene, {Vec3(1e6, 0, 0), Vec3::UnitX()});
+  ASSERT_TRUE(hit.front);
+  const Hit across = first_hit(scene, {leave_surface(scene.primitives[0], hit), -Vec3::UnitX()});
+  EXPECT_NEAR(across.distance, 4, 1e-8);
 }
 
 TEST(FirstHit, TheNearestWinsWhateverTheOrder) {
