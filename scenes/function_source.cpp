@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include "core/coordinates.h"
+#include "scenes/pairs.h"
 
 namespace halfslope {
 namespace {
@@ -37,13 +38,6 @@ class FunctionIntegral final : public Integral {
   const FunctionSource::Function& f_;
   int dims_, pixel_;
 };
-
-Layout pairs(int dims) {
-  Layout layout;
-  layout.groups.assign(static_cast<std::size_t>(dims) / 2, 2);
-  if (dims % 2 == 1) layout.groups.push_back(1);
-  return layout;
-}
 
 }  // namespace
 

@@ -1,7 +1,8 @@
 #include "scenes/integrand.h"
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
 #include <numbers>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/kernel_library.h"
+#include "scenes/pairs.h"
 
 namespace halfslope {
 namespace {
@@ -55,10 +57,19 @@ IntegrandKernel find_kernel(const std::string& name) {
   fail(ExitCode::kIo, "the kernel library has no integrand '{}'; it is of another version", name);
 }
 
+// A finite decimal number, all of the text, whatever the locale.
+std::optional<double> parse_number(std::string_view text) {
+  double value = 0;
+  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool whole = status == std::errc() && end == text.data() + text.size();
+  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
 // The value of each parameter in "n=1000,alpha=0.05"; every one of `names` must be given once, and no other.
 std::map<std::string, double> parse_parameters(const std::string& scene, std::string_view text,
                                                const std::vector<std::string>& names) {
   std::map<std::string, double> values;
+  if (text.ends_with(',')) fail(ExitCode::kBadInput, "scene '{}': nothing stands after the last ','", scene);
   while (!text.empty()) {
     const std::string item(text.substr(0, text.find(',')));
     text.remove_prefix(std::min(text.size(), item.size() + 1));
@@ -68,13 +79,12 @@ std::map<std::string, double> parse_parameters(const std::string& scene, std::st
       fail(ExitCode::kBadInput, "scene '{}': there is no parameter '{}'{}; allowed: {}", scene, name,
            did_you_mean(name, names), fmt::join(names, ", "));
     }
-    char* end = nullptr;
     const std::string number = equals == std::string::npos ? "" : item.substr(equals + 1);
-    const double value = std::strtod(number.c_str(), &end);
-    if (number.empty() || *end != '\0' || !std::isfinite(value)) {
+    const auto value = parse_number(number);
+    if (!value) {
       fail(ExitCode::kBadInput, "scene '{}': parameter '{}' must be a number, found '{}'", scene, name, number);
     }
-    if (!values.emplace(name, value).second)
+    if (!values.emplace(name, *value).second)
       fail(ExitCode::kBadInput, "scene '{}': parameter '{}' stands twice", scene, name);
   }
   for (const auto& name : names) {
@@ -101,6 +111,74 @@ std::unique_ptr<IntegralSource> make_cap(const std::string& scene, std::string_v
   return std::make_unique<AnalyticSource>("aligned-phong-cap", std::vector{n, v_max}, kLightAndBsdf, exact, scene);
 }
 
+constexpr int kMostDims = 6;
+
+int parse_dims(const std::string& scene, std::string_view text) {
+  const double d = parse_parameters(scene, text, {"d"}).at("d");
+  if (!(d >= 1 && d <= kMostDims && d == std::trunc(d))) {
+    fail(ExitCode::kBadInput, "scene '{}': d must be a whole number from 1 to {}, found {}", scene, kMostDims, d);
+  }
+  return static_cast<int>(d);
+}
+
+// aᵢ = 7.03 (i − ½)/d² to four decimals, so that Σ aᵢ = 3.515 in every dimension; uᵢ are fixed centres, no binary
+// fractions but the first. A factor's integral is √π/(2a) (erf(a (1 − u)) + erf(a u)).
+std::unique_ptr<IntegralSource> make_genz_gaussian(const std::string& scene, std::string_view text) {
+  constexpr double kCentres[kMostDims] = {0.5, 0.2326, 0.6652, 0.3979, 0.8305, 0.5631};
+  const int dims = parse_dims(scene, text);
+  std::vector<double> parameters;
+  for (int i = 1; i <= dims; ++i) {
+    parameters.push_back(std::nearbyint(70300.0 * (2 * i - 1) / (2.0 * dims * dims)) / 10000);
+  }
+  parameters.insert(parameters.end(), kCentres, kCentres + dims);
+  double exact = 1;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(dims); ++i) {
+    const double a = parameters[i], u = kCentres[i];
+    exact *= std::sqrt(std::numbers::pi) / (2 * a) * (std::erf(a * (1 - u)) + std::erf(a * u));
+  }
+  return std::make_unique<AnalyticSource>(fmt::format("genz-gaussian:d={}", dims), parameters,
+                                          std::vector<Technique>{{"mean", pairs(dims)}}, exact, scene);
+}
+
+// The part of the unit cube where w·x > c. With x → 1 − x wherever w is negative, all weights are |w| and c grows by
+// those; then one minus the corner below the plane, by inclusion and exclusion over the vertices v:
+// 1/(d! ∏|w|) Σ (−1)^|v| max(0, c − |w|·v)^d. Up to six dimensions its terms are of the order of the sum.
+double halfspace_volume(std::span<const double> weights, double c) {
+  const std::size_t dims = weights.size();
+  long double corner = c, scale = 1, sum = 0;
+  for (std::size_t i = 0; i < dims; ++i) {
+    corner += std::max(0.0, -weights[i]);
+    scale *= static_cast<long double>(i + 1) * std::fabs(weights[i]);
+  }
+  for (unsigned vertex = 0; vertex < 1u << dims; ++vertex) {
+    long double rest = corner, power = 1;
+    for (std::size_t i = 0; i < dims; ++i) {
+      if (vertex >> i & 1) {
+        rest -= std::fabs(weights[i]);
+        power = -power;
+      }
+    }
+    if (rest <= 0) continue;
+    for (std::size_t i = 0; i < dims; ++i) power *= rest;
+    sum += power;
+  }
+  return static_cast<double>(1 - sum / scale);
+}
+
+// Weights one over the root of a prime, so that the plane is in general position; signs that lead it through the
+// middle of the cube.
+std::unique_ptr<IntegralSource> make_halfspace(const std::string& scene, std::string_view text) {
+  const int dims = parse_dims(scene, text);
+  const double r2 = 1 / std::sqrt(2.0), r3 = 1 / std::sqrt(3.0), r5 = 1 / std::sqrt(5.0), r7 = 1 / std::sqrt(7.0),
+               r11 = 1 / std::sqrt(11.0);
+  const std::vector<double> weights[kMostDims] = {
+      {r2}, {1, -r2}, {1, -r2, r3}, {1, r2, -r3, -r5}, {1, r2, -r3, -r5, r7}, {1, r2, -r3, -r5, r7, -r11}};
+  const std::vector<double>& own = weights[dims - 1];
+  return std::make_unique<AnalyticSource>(fmt::format("halfspace:d={}", dims), own,
+                                          std::vector<Technique>{{"mean", pairs(dims)}}, halfspace_volume(own, 0.1),
+                                          scene);
+}
+
 struct Entry {
   IntegrandInfo info;
   std::function<std::unique_ptr<IntegralSource>(const std::string& scene, std::string_view parameters)> make;
@@ -109,7 +187,10 @@ struct Entry {
 // A scene without parameters.
 auto plain(const char* kernel, std::vector<Technique> techniques, double exact) {
   return [=](const std::string& scene, std::string_view text) {
-    parse_parameters(scene, text, {});
+    if (!text.empty()) {
+      fail(ExitCode::kBadInput, "scene '{}': it takes no parameters; write '{}'", scene,
+           scene.substr(0, scene.find(':')));
+    }
     return std::make_unique<AnalyticSource>(kernel, std::vector<double>{}, techniques, exact, scene);
   };
 }
@@ -124,6 +205,18 @@ const std::vector<Entry>& entries() {
       {{"quartergaussian", "", "exp(-x^2 - y^2) on the unit square; integral pi/4 erf(1)^2",
         "Christensen, Kensler & Kilpatrick, Progressive multi-jittered sample sequences (2018)"},
        plain("quartergaussian", {kMean}, std::numbers::pi / 4 * kErf1 * kErf1)},
+      {{"stepx", "", "1 where x < 1/pi, on the unit square; integral 1/pi",
+        "Christensen, Kensler & Kilpatrick, Progressive multi-jittered sample sequences (2018)"},
+       plain("stepx", {kMean}, std::numbers::inv_pi)},
+      {{"bilinear", "", "x y on the unit square; integral 1/4",
+        "Christensen, Kensler & Kilpatrick, Progressive multi-jittered sample sequences (2018)"},
+       plain("bilinear", {kMean}, 0.25)},
+      {{"genz-gaussian", "d=DIMENSIONS", "a smooth peak in the unit cube of 1 to 6 dimensions; integral by erf",
+        "Genz, Testing multidimensional integration routines (1984)"},
+       make_genz_gaussian},
+      {{"halfspace", "d=DIMENSIONS", "1 on one side of a plane through the unit cube of 1 to 6 dimensions",
+        "Cho & Cho, Volume of hypercubes clipped by hyperplanes (2015)"},
+       make_halfspace},
       {{"mis-toy", "", "f(x) = x on [0,1]; 'light' has density 1, 'bsdf' has density 2x; integral 1/2",
         "the smallest problem on which every heuristic has an exact variance"},
        plain("mis-toy", kLightAndBsdf, 0.5)},
@@ -159,6 +252,7 @@ std::unique_ptr<IntegralSource> make_analytic_scene(const std::string& name) {
   const auto colon = name.find(':');
   for (const Entry& entry : entries()) {
     if (entry.info.name == name.substr(0, colon)) {
+      if (colon + 1 == name.size()) fail(ExitCode::kBadInput, "scene '{}': nothing stands after ':'", name);
       return entry.make(name,
                         colon == std::string::npos ? std::string_view() : std::string_view(name).substr(colon + 1));
     }

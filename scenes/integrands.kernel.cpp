@@ -27,6 +27,27 @@ struct QuarterDisk {
   }
 };
 
+// 1 where x < 1/π (Christensen, Kensler & Kilpatrick 2018).
+struct StepX {
+  static constexpr const char* kName = "stepx";
+  template <class F>
+  static Sampled<F> sample(const double*, int, const F* u) {
+    using T = scalar_t<F>;
+    const F one(T(1)), zero(T(0));
+    return {select(u[0] < F(T(std::numbers::inv_pi)), one, zero), {one, one}};
+  }
+};
+
+// x y (Christensen, Kensler & Kilpatrick 2018).
+struct Bilinear {
+  static constexpr const char* kName = "bilinear";
+  template <class F>
+  static Sampled<F> sample(const double*, int, const F* u) {
+    const F one(scalar_t<F>(1));
+    return {u[0] * u[1], {one, one}};
+  }
+};
+
 // exp(−x² − y²) (Christensen, Kensler & Kilpatrick 2018).
 struct QuarterGaussian {
   static constexpr const char* kName = "quartergaussian";
@@ -73,6 +94,41 @@ struct AlignedPhongCap {
   }
 };
 
+// exp(−Σ aᵢ² (xᵢ − uᵢ)²) (Genz 1984). parameters: a₁ … a_D, u₁ … u_D.
+template <int kDims>
+struct GenzGaussian {
+  static constexpr const char* kNames[] = {"genz-gaussian:d=1", "genz-gaussian:d=2", "genz-gaussian:d=3",
+                                           "genz-gaussian:d=4", "genz-gaussian:d=5", "genz-gaussian:d=6"};
+  static constexpr const char* kName = kNames[kDims - 1];
+  template <class F>
+  static Sampled<F> sample(const double* parameters, int, const F* u) {
+    using T = scalar_t<F>;
+    const F one(T(1));
+    F sum(T(0));
+    for (int d = 0; d < kDims; ++d) {
+      const F scaled = F(static_cast<T>(parameters[d])) * (u[d] - F(static_cast<T>(parameters[kDims + d])));
+      sum = fma(scaled, scaled, sum);
+    }
+    return {exp(-sum), {one, one}};
+  }
+};
+
+// 1 where Σ wᵢ xᵢ > 1/10. parameters: w₁ … w_D.
+template <int kDims>
+struct HalfSpace {
+  static constexpr const char* kNames[] = {"halfspace:d=1", "halfspace:d=2", "halfspace:d=3",
+                                           "halfspace:d=4", "halfspace:d=5", "halfspace:d=6"};
+  static constexpr const char* kName = kNames[kDims - 1];
+  template <class F>
+  static Sampled<F> sample(const double* parameters, int, const F* u) {
+    using T = scalar_t<F>;
+    const F one(T(1)), zero(T(0));
+    F sum(T(-0.1));
+    for (int d = 0; d < kDims; ++d) sum = fma(F(static_cast<T>(parameters[d])), u[d], sum);
+    return {select(sum > zero, one, zero), {one, one}};
+  }
+};
+
 template <class T, class Integrand, int kDims>
 void evaluate(const IntegrandCall<T>& call) {
   using F = NativePacket<T>;
@@ -104,10 +160,12 @@ constexpr IntegrandKernel entry() {
 extern "C" __attribute__((visibility("default"))) const void* halfslope_integrand_kernels() {
   using namespace halfslope::kernel;
   static constexpr halfslope::IntegrandKernel kIntegrands[] = {
-      entry<QuarterDisk, 2>(),
-      entry<QuarterGaussian, 2>(),
-      entry<MisToy, 1>(),
-      entry<AlignedPhongCap, 1>(),
+      entry<QuarterDisk, 2>(),     entry<QuarterGaussian, 2>(), entry<MisToy, 1>(),
+      entry<AlignedPhongCap, 1>(), entry<StepX, 2>(),           entry<Bilinear, 2>(),
+      entry<GenzGaussian<1>, 1>(), entry<GenzGaussian<2>, 2>(), entry<GenzGaussian<3>, 3>(),
+      entry<GenzGaussian<4>, 4>(), entry<GenzGaussian<5>, 5>(), entry<GenzGaussian<6>, 6>(),
+      entry<HalfSpace<1>, 1>(),    entry<HalfSpace<2>, 2>(),    entry<HalfSpace<3>, 3>(),
+      entry<HalfSpace<4>, 4>(),    entry<HalfSpace<5>, 5>(),    entry<HalfSpace<6>, 6>(),
   };
   static constexpr halfslope::IntegrandKernels kTable = {kIntegrands, std::size(kIntegrands)};
   return &kTable;
