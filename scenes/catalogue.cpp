@@ -13,6 +13,18 @@ std::vector<SceneEntry> rendered_scenes() {
   return {
       {"veach-mis", "four glossy plates, from smooth to rough, reflect four spheres, from small to large",
        "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
+      {"veach-mis-phong", "the same with Phong plates, as they were first",
+       "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
+      {"diffuse-rectangle", "a diffuse floor under one rectangle light; every pixel in closed form",
+       "Lambert, Photometria, 1760"},
+      {"diffuse-disk", "a diffuse floor under one disk light; every pixel in closed form",
+       "Heitz & Hill, Real-Time Line- and Disk-Light Shading with Linearly Transformed Cosines, 2017"},
+      {"diffuse-sphere", "a diffuse floor under one sphere light; every pixel in closed form",
+       "Snyder, Area Light Sources for Real-Time Graphics, 1996"},
+      {"furnace", "a sphere and a plane in radiance 1 from all around reflect exactly their six albedos",
+       "the white-furnace test of energy conservation"},
+      {"glossy-reflection", "a glossy floor reflects square lights of equal power, from small to large",
+       "the comparison of uniform with stratified sampling by their noise"},
   };
 }
 

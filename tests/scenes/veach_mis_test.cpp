@@ -45,7 +45,9 @@ TEST(Catalogue, UnknownNameOffersTheNearest) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::kBadInput);
-    EXPECT_STREQ(error.what(), "unknown scene 'veach-mi', allowed: veach-mis; did you mean 'veach-mis'?");
+    EXPECT_STREQ(error.what(),
+                 "unknown scene 'veach-mi', allowed: veach-mis, veach-mis-phong, diffuse-rectangle, diffuse-disk, "
+                 "diffuse-sphere, furnace, glossy-reflection; did you mean 'veach-mis'?");
   }
 }
 
