@@ -13,7 +13,7 @@ std::vector<SceneEntry> rendered_scenes() {
   return {
       {"veach-mis", "four glossy plates, from smooth to rough, reflect four spheres, from small to large",
        "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
-      {"veach-mis-phong", "the same with Phong plates, as they were first",
+      {"veach-mis-phong", "the same with plates that are Phong lobes",
        "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
       {"diffuse-rectangle", "a diffuse floor under one rectangle light; every pixel in closed form",
        "Lambert, Photometria, 1760"},
