@@ -4,16 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/kernel_library.h"
+#include "tests/scenes/integrand_samples.h"
 
 namespace halfslope {
 namespace {
@@ -21,59 +19,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr double kPi = std::numbers::pi;
-constexpr int kSamples = 64;
-
-PointBlock random_points(int dims, int count = kSamples) {
-  PointBlock points;
-  points.reset(dims, count, true);
-  std::mt19937_64 random(static_cast<std::uint64_t>(dims));
-  for (int d = 0; d < dims; ++d) {
-    for (std::size_t i = 0; i < points.stride(); ++i) {
-      points.high(d)[i] = static_cast<std::uint32_t>(random());
-      points.low(d)[i] = static_cast<std::uint32_t>(random() >> 43);
-    }
-  }
-  // The ends of the interval too.
-  for (int d = 0; d < dims; ++d) {
-    points.high(d)[0] = points.low(d)[0] = 0;
-    points.high(d)[1] = 0xffffffffu;
-    points.low(d)[1] = (1u << 21) - 1;
-  }
-  return points;
-}
-
-template <class T>
-double coordinate_as(const PointBlock& points, int dim, std::size_t i) {
-  const double u = points.coordinate(dim, static_cast<int>(i / kLanes), static_cast<int>(i % kLanes));
-  return std::is_same_v<T, float> ? std::floor(u * 0x1p24) * 0x1p-24 : u;
-}
-
-/// Value and densities of one technique at random points, with every density of the set.
-template <class T>
-struct Samples {
-  PointBlock points;
-  TermBlock<T> terms;
-  Samples(const IntegralSource& scene, int technique)
-      : points(random_points(scene.techniques()[static_cast<std::size_t>(technique)].layout.dims())) {
-    std::vector<int> set;
-    for (std::size_t k = 0; k < scene.techniques().size(); ++k) set.push_back(static_cast<int>(k));
-    terms.reset(1, 1, static_cast<int>(set.size()), kSamples);
-    scene.pixel(0).integral->sample({technique, 0, 0, set}, points, terms);
-  }
-  double u(int dim, std::size_t i) const { return coordinate_as<T>(points, dim, i); }
-  std::size_t size() const { return points.stride(); }
-  double value(std::size_t i) { return terms.value(0, 0)[i]; }
-  double pdf(int k, std::size_t i) { return terms.pdf(0, k)[i]; }
-};
-
-template <class T>
-class Integrands : public testing::Test {
- protected:
-  static constexpr double kUlps = 16 * std::numeric_limits<T>::epsilon();
-  static void close(double found, double exact) { ASSERT_LE(std::fabs(found - exact), kUlps * std::fabs(exact)); }
-};
-using Numbers = testing::Types<float, double>;
 TYPED_TEST_SUITE(Integrands, Numbers);
 
 TYPED_TEST(Integrands, QuarterDisk) {
@@ -129,127 +74,6 @@ TYPED_TEST(Integrands, Bilinear) {
     this->close(samples.value(i), samples.u(0, i) * samples.u(1, i));
     ASSERT_EQ(samples.pdf(0, i), 1);
   }
-}
-
-TYPED_TEST(Integrands, GenzGaussian) {
-  // The coefficients of published tables, difficulty 7.03 spread as 1/d², to four decimals.
-  const std::array<double, 6> centres = {0.5, 0.2326, 0.6652, 0.3979, 0.8305, 0.5631};
-  const std::vector<std::vector<double>> widths = {{3.515},
-                                                   {0.8788, 2.6362},
-                                                   {0.3906, 1.1717, 1.9528},
-                                                   {0.2197, 0.6591, 1.0984, 1.5378},
-                                                   {0.1406, 0.4218, 0.703, 0.9842, 1.2654},
-                                                   {0.0976, 0.2929, 0.4882, 0.6835, 0.8788, 1.074}};
-  for (int d = 1; d <= 6; ++d) {
-    Samples<TypeParam> samples(*make_analytic_scene(fmt::format("genz-gaussian:d={}", d)), 0);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      double sum = 0;
-      for (int k = 0; k < d; ++k) {
-        const auto j = static_cast<std::size_t>(k);
-        sum += std::pow(widths[static_cast<std::size_t>(d - 1)][j] * (samples.u(k, i) - centres[j]), 2);
-      }
-      // The exponent's error is that of its largest terms.
-      ASSERT_NEAR(samples.value(i) / std::exp(-sum), 1, this->kUlps * (1 + sum));
-      ASSERT_EQ(samples.pdf(0, i), 1);
-    }
-  }
-}
-
-TYPED_TEST(Integrands, HalfSpace) {
-  const auto side = [](int d, const std::array<double, 6>& x) {
-    const double r2 = x[1] / std::sqrt(2), r3 = x[2] / std::sqrt(3), r5 = x[3] / std::sqrt(5);
-    if (d == 1) return x[0] / std::sqrt(2) - 0.1;
-    if (d == 2) return x[0] - r2 - 0.1;
-    if (d == 3) return x[0] - r2 + r3 - 0.1;
-    const double four = x[0] + r2 - r3 - r5 - 0.1;
-    return four + (d > 4 ? x[4] / std::sqrt(7) : 0) - (d > 5 ? x[5] / std::sqrt(11) : 0);
-  };
-  for (int d = 1; d <= 6; ++d) {
-    Samples<TypeParam> samples(*make_analytic_scene(fmt::format("halfspace:d={}", d)), 0);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      std::array<double, 6> x{};
-      for (int k = 0; k < d; ++k) x[static_cast<std::size_t>(k)] = samples.u(k, i);
-      ASSERT_GT(std::fabs(side(d, x)), 1e-6) << "on the plane";
-      ASSERT_EQ(samples.value(i), side(d, x) > 0 ? 1 : 0);
-    }
-  }
-}
-
-struct Known {
-  const char* name;
-  double integral, variance;  ///< independent, to the digits given
-};
-
-TEST(AnalyticScenes, IntegralsAndVariancesAreTheKnownOnes) {
-  const std::array<Known, 9> known = {{{"stepx", 0.3183098861837906715, 0.216988702541453},
-                                       {"quarterdisk", 0.5, 0.25},
-                                       {"bilinear", 0.25, 0.0486111111111111},
-                                       {"genz-gaussian:d=2", 0.5083151935558555880, 0.11602644186723},
-                                       {"genz-gaussian:d=4", 0.6767085303644633084, 0.029127484279478},
-                                       {"genz-gaussian:d=6", 0.7291923014946368974, 0.0176771073970815},
-                                       {"halfspace:d=3", 0.7907163333946851956, 0.16548401349755},
-                                       {"halfspace:d=4", 0.7104723182568874544, 0.205701403247571},
-                                       {"halfspace:d=1", 1 - 0.14142135623730950488, 0.12142135623730950488}}};
-  const int samples = 1 << 14;
-  for (const Known& k : known) {
-    SCOPED_TRACE(k.name);
-    const auto scene = make_analytic_scene(k.name);
-    EXPECT_NEAR((*scene->closed_form(0))[0], k.integral, 2e-15);
-    const PointBlock points = random_points(scene->techniques()[0].layout.dims(), samples);
-    const std::size_t count = points.stride();
-    const double n = static_cast<double>(count);
-    TermBlock<double> terms;
-    terms.reset(1, 1, 1, samples);
-    const std::vector<int> set = {0};
-    scene->pixel(0).integral->sample({0, 0, 0, set}, points, terms);
-    const double* values = terms.value(0, 0);
-    double mean = 0, second = 0, fourth = 0;
-    for (std::size_t i = 0; i < count; ++i) mean += values[i] / n;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double square = (values[i] - k.integral) * (values[i] - k.integral);
-      second += square / n;
-      fourth += square * square / n;
-    }
-    // Six standard errors of each: a false alarm in 5e8.
-    EXPECT_NEAR(mean, k.integral, 6 * std::sqrt(k.variance / n));
-    EXPECT_NEAR(second, k.variance, 6 * std::sqrt((fourth - k.variance * k.variance) / n) + 1e-12);
-  }
-}
-
-TEST(AnalyticScenes, HalfSpaceVolumesAreThoseOfTheirSections) {
-  // V_d = ∫ V_(d−1)(offset − w x) dx over the last coordinate; in one dimension V is a clamped line. Piecewise
-  // polynomial of degree ≤ 5, so the midpoint rule on n cells is right to 1/n².
-  const double r2 = 1 / std::sqrt(2), r3 = 1 / std::sqrt(3), r5 = 1 / std::sqrt(5), r7 = 1 / std::sqrt(7);
-  const auto first = [](double c) { return std::clamp(1 - c, 0.0, 1.0); };  // x > c
-  const auto second = [&](double w, double c) {                             // x + w y > c, w > 0: exactly
-    const auto g = [&](double t) { return t <= 0 ? 0.0 : t >= 1 ? t - 0.5 : t * t / 2; };  // ∫ clamp(s, 0, 1) ds
-    return (g(1 - c + w) - g(1 - c)) / w;
-  };
-  const int n = 100;
-  const auto mean = [&](const auto& f) {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) sum += f((i + 0.5) / n) / n;
-    return sum;
-  };
-  EXPECT_NEAR((*make_analytic_scene("halfspace:d=2")->closed_form(0))[0],
-              mean([&](double y) { return first(0.1 + r2 * y); }), 1e-5);
-  const double five = mean([&](double a) {
-    return mean([&](double b) { return mean([&](double c) { return second(r2, 0.1 + r3 * a + r5 * b - r7 * c); }); });
-  });
-  EXPECT_NEAR((*make_analytic_scene("halfspace:d=5")->closed_form(0))[0], five, 1e-5);
-  const int coarse = 60;
-  double six = 0;
-  for (int i = 0; i < coarse; ++i) {
-    for (int j = 0; j < coarse; ++j) {
-      for (int k = 0; k < coarse; ++k) {
-        for (int l = 0; l < coarse / 4; ++l) {
-          const double h = 1.0 / coarse, a = (i + 0.5) * h, b = (j + 0.5) * h, c = (k + 0.5) * h, e = (l + 0.5) * 4 * h;
-          six += second(r2, 0.1 + r3 * a + r5 * b - r7 * c + e / std::sqrt(11)) * 4 * h * h * h * h;
-        }
-      }
-    }
-  }
-  EXPECT_NEAR((*make_analytic_scene("halfspace:d=6")->closed_form(0))[0], six, 1e-4);
 }
 
 struct CapParameters {
