@@ -2,6 +2,7 @@
 // turns in one run, beside what the plan claims for it (estimators/skip_worth.h).
 #include <benchmark/benchmark.h>
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <functional>
 #include <memory>
