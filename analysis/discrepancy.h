@@ -27,7 +27,7 @@ class PointSet {
 /// Exact but for rounding: every box that can be the worst one is looked at, and the error is at most
 /// (3 log₂ N + 4) · 2⁻⁵³. One dimension: D* = 1/(2N) + max |x_(i) − (2i − 1)/(2N)| (H. Niederreiter, "Random Number
 /// Generation and Quasi-Monte Carlo Methods", 1992, theorem 2.6), O(N log N). Two dimensions: O(N log² N) time and
-/// about 100 N bytes; star_discrepancy.cpp says how.
+/// about 200 N bytes; star_discrepancy.cpp says how.
 double star_discrepancy(const PointSet& points);
 
 /// The L2-star discrepancy: the root of the mean over boxes [0, u), u uniform in [0,1)^d, of

@@ -45,16 +45,16 @@ TEST_F(Commands, EveryCommandHasHelp) {
     EXPECT_THAT(help.err, IsEmpty());
   }
   const Ended run_help = command({"run", "--help"});
-  for (const char* flag :
-       {"--name", "--scene", "--estimators", "--samplers", "--samples", "--replicates", "--seed", "--resolution",
-        "--pixels", "--images", "--precision", "--out", "--threads", "--quiet", "--dry-run", "--overwrite", "--json"})
+  for (const char* flag : {"--name", "--scene", "--estimators", "--samplers", "--samples", "--replicates", "--seed",
+                           "--resolution", "--pixels", "--images", "--precision", "--measures", "--out", "--threads",
+                           "--quiet", "--dry-run", "--overwrite", "--json"})
     EXPECT_THAT(run_help.out, HasSubstr(flag));
   EXPECT_THAT(command({"--version"}).out, ContainsRegex("^[0-9]+\\.[0-9]+\\.[0-9]+\n$"));
 }
 
 TEST_F(Commands, ListsAreTablesAndJson) {
   const auto json = nlohmann::json::parse(command({"list", "--json"}).out);
-  for (const char* kind : {"samplers", "estimators", "scenes", "statuses"}) {
+  for (const char* kind : {"samplers", "estimators", "scenes", "measures", "statuses"}) {
     ASSERT_TRUE(json.contains(kind));
     const Ended table = command({"list", kind});
     for (const auto& entry : json[kind]) {
@@ -65,6 +65,7 @@ TEST_F(Commands, ListsAreTablesAndJson) {
   }
   EXPECT_THAT(command({"list", "samplers", "--names"}).out,
               HasSubstr("independent\nstratified\njittered\nn-rooks\nhalton\nhalton-cp\nhalton-owen\n"));
+  EXPECT_EQ(command({"list", "measures", "--names"}).out, "star\nl2-star\n");
 }
 
 TEST_F(Commands, JsonIsConvergenceCsv) {
@@ -132,9 +133,10 @@ TEST_F(Commands, CompletionIsAShellScript) {
       "source <(" + kProgram + " completion); halfslope() { " + kProgram + " \"$@\"; }; " +
       "COMP_WORDS=(halfslope points --sampler halton-o); COMP_CWORD=3; _halfslope; echo ${COMPREPLY[0]}; "
       "COMP_WORDS=(halfslope ren); COMP_CWORD=1; _halfslope; echo ${COMPREPLY[0]}; "
-      "COMP_WORDS=(halfslope run --over); COMP_CWORD=2; _halfslope; echo ${COMPREPLY[0]}";
+      "COMP_WORDS=(halfslope run --over); COMP_CWORD=2; _halfslope; echo ${COMPREPLY[0]}; "
+      "COMP_WORDS=(halfslope run --measures l2); COMP_CWORD=3; _halfslope; echo ${COMPREPLY[0]}";
   const Ended ended = run_program({"-c", script}, bash);
-  EXPECT_EQ(ended.out, "halton-owen\nrender\n--overwrite\n") << ended.err;
+  EXPECT_EQ(ended.out, "halton-owen\nrender\n--overwrite\nl2-star\n") << ended.err;
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ resolution = [96, 64]
 pixels = 200
 images = [64, 4]
 precision = ["f64", "f32"]
+measures = ["l2-star", "star"]
 )",
                                     "x.toml");
   EXPECT_EQ(spec.name, "figure 3");
@@ -72,6 +73,7 @@ precision = ["f64", "f32"]
   EXPECT_EQ(spec.pixels, 200);
   EXPECT_THAT(spec.images, ElementsAre(4, 64));
   EXPECT_THAT(spec.precision, ElementsAre(Precision::kF64, Precision::kF32));
+  EXPECT_THAT(spec.measures, ElementsAre("star", "l2-star"));  // the catalogue's order
   EXPECT_EQ(spec.places.at("replicates"), "x.toml:7:14");
   EXPECT_EQ(spec.codes.at("replicates"), 3);
   EXPECT_NO_THROW(validate(spec));
@@ -142,13 +144,29 @@ TEST(SpecToml, RangesAreOfPowersOfTwo) {
 }
 
 TEST(SpecToml, EmptyListsAndRepetitions) {
-  for (const char* key : {"scene", "estimators", "samplers", "samples", "precision"})
+  for (const char* key : {"scene", "estimators", "samplers", "samples", "precision", "measures"})
     EXPECT_THAT(refusal(std::string(key) + " = []"), HasSubstr("found an empty list")) << key;
   EXPECT_THAT(refusal("samplers = ['']"), HasSubstr("found an empty name"));
   EXPECT_THAT(refusal("samplers = ['n-rooks', 'n-rooks']"),
               StartsWith("x.toml:1:24: key 'samplers': 'n-rooks' stands "));
   EXPECT_THAT(refusal("samples = [4, 8, 4]"), StartsWith("x.toml:1:18: key 'samples': 4 stands there twice"));
   EXPECT_THAT(refusal("precision = ['f32', 'f32']"), HasSubstr("twice"));
+}
+
+TEST(SpecToml, MeasuresAreNamesOfTheCatalogue) {
+  EXPECT_THAT(parse_spec_toml(kSmallest, "x").measures, IsEmpty());
+  EXPECT_THAT(parse_spec_toml("measures = 'l2-star'", "x").measures, ElementsAre("l2-star"));
+  EXPECT_THAT(parse_spec_toml("measures = 'none'", "x").measures, IsEmpty());
+  EXPECT_EQ(
+      refusal("\nmeasures = ['star', 'l2star']"),
+      "x.toml:2:21: key 'measures': there is no measure 'l2star'; did you mean 'l2-star'? allowed: star, l2-star, "
+      "a list of different ones, or 'none'");
+  EXPECT_THAT(refusal("measures = 'everything'"),
+              StartsWith("x.toml:1:12: key 'measures': there is no measure 'everything'; allowed: star, l2-star, "));
+  EXPECT_THAT(refusal("measures = ['none']"), HasSubstr("there is no measure 'none'"));
+  EXPECT_THAT(refusal("measures = ['star', 'star']"), HasSubstr("'star' stands there twice"));
+  EXPECT_THAT(refusal("measures = 3"), HasSubstr("key 'measures': found 3; "));
+  EXPECT_THAT(refusal("measures = ''"), HasSubstr("found an empty name"));
 }
 
 TEST(SpecToml, NamesMustFitAFolder) {
@@ -177,6 +195,7 @@ TEST(SpecFlags, ListsBreakAtCommas) {
   EXPECT_THAT(with_flag("samples", "256").samples.counts, ElementsAre(256));
   EXPECT_THAT(with_flag("precision", "f32,f64").precision, ElementsAre(Precision::kF32, Precision::kF64));
   EXPECT_THAT(with_flag("images", "4,16").images, ElementsAre(4, 16));
+  EXPECT_THAT(with_flag("measures", "l2-star,star").measures, ElementsAre("star", "l2-star"));
   const Spec range = with_flag("samples", "16:64");
   EXPECT_THAT(range.samples.counts, ElementsAre(16, 32, 64));
   EXPECT_TRUE(range.samples.is_range);
@@ -213,6 +232,8 @@ TEST(SpecFlags, ErrorsNameTheFlagAndAreUsage) {
   EXPECT_THAT(flag_refusal("resolution", "0x64"), StartsWith("--resolution: found '0'; "));
   EXPECT_THAT(flag_refusal("resolution", "96"), StartsWith("--resolution: found '96'; "));
   EXPECT_THAT(flag_refusal("scene", ""), StartsWith("--scene: found an empty name"));
+  EXPECT_THAT(flag_refusal("measures", "star,start"),
+              StartsWith("--measures: there is no measure 'start'; did you mean 'star'? allowed: star, l2-star, "));
   EXPECT_THAT(flag_refusal("samplers", "a,,b"), StartsWith("--samplers: found an empty name"));
   EXPECT_THAT(flag_refusal("samplees", "4"), StartsWith("--samplees is not known; did you mean 'samples'? allowed: "));
 }
@@ -225,6 +246,9 @@ TEST(SpecFlags, AFlagReplacesTheFilesValue) {
   EXPECT_THAT(spec.samplers, ElementsAre("halton-owen"));
   EXPECT_THAT(spec.samples.counts, ElementsAre(4, 8));
   EXPECT_FALSE(spec.pixels);
+  apply_flag(spec, "measures", "star");
+  apply_flag(spec, "measures", "none");
+  EXPECT_THAT(spec.measures, IsEmpty());
   EXPECT_EQ(spec.places.at("samplers"), "--samplers");
   EXPECT_EQ(spec.codes.at("samplers"), 2);
   EXPECT_EQ(spec.places.at("scene"), "x.toml:1:9");
@@ -263,6 +287,19 @@ TEST(SpecJson, IsCanonical) {
             R"("samplers":["independent"],"samples":[16],"scene":["veach-mis"],"seed":1})");
 }
 
+// Without measures the key is not there: hashes of experiments that have none stay what they were before it was.
+TEST(SpecJson, MeasuresStandThereWhereTheyAreAskedFor) {
+  Spec spec = parse_spec_toml(kSmallest, "x.toml");
+  const std::string without = canonical_json(spec);
+  apply_flag(spec, "measures", "star,l2-star");
+  EXPECT_THAT(canonical_json(spec), HasSubstr(R"("images":[],"measures":["star","l2-star"],"pixels")"));
+  const std::string hash = spec_hash(spec);
+  apply_flag(spec, "measures", "l2-star,star");
+  EXPECT_EQ(spec_hash(spec), hash);
+  apply_flag(spec, "measures", "none");
+  EXPECT_EQ(canonical_json(spec), without);
+}
+
 TEST(SpecJson, SameNumbersSameHash) {
   const Spec file = parse_spec_toml(std::string(kSmallest) + "name = 'x'", "x.toml");
   Spec flags = with_flag("samples", "16:16");
@@ -278,7 +315,7 @@ TEST(SpecJson, EveryKeyThatChangesNumbersChangesTheHash) {
       {"scene", "quarterdisk"}, {"estimators", "light"}, {"samplers", "n-rooks"},
       {"samples", "16,32"},     {"images", "16"},        {"replicates", "65"},
       {"resolution", "96x64"},  {"pixels", "5"},         {"seed", "2"},
-      {"precision", "f64"}};
+      {"precision", "f64"},     {"measures", "star"}};
   for (const auto& [key, value] : changes) {
     Spec other = base;
     apply_flag(other, key, value);
