@@ -174,7 +174,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   write_reference_images(folder.path(), plan, references);
   write("rates.csv", rates_csv(plan, outcome.results));
-  write("discrepancy.csv", discrepancy_csv(plan.measures, outcome.measured));
+  write_discrepancy_csv(folder.path("discrepancy.csv"), plan.measures, outcome.measured);
   write("regions.csv", regions_csv(plan, outcome.results));
   write("convergence.csv", convergence_csv(plan, outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));

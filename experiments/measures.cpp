@@ -1,9 +1,10 @@
 #include "experiments/measures.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/parallel_for_each.h>
 
 #include <algorithm>
 
+#include "core/atomic_file.h"
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/point_block.h"
@@ -19,6 +20,8 @@ namespace {
 // than so many points, or one set.
 constexpr std::uint64_t kPointsHeld = std::uint64_t{1} << 18;
 constexpr int kBlock = 256;
+// Threads at work on sets above kPointsHeld, each of which takes up to 200 MB.
+constexpr int kLargeAtOnce = 4;
 
 /// Some replicates of a sampler's points at one N; of a sequence, at every N.
 struct Task {
@@ -119,15 +122,22 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
                             const std::string& label, bool quiet) {
   Measurements measured(plan.rows());
   if (measured.empty()) return measured;
-  const std::vector<Task> tasks = tasks_of(plan);
+  std::vector<Task> tasks = tasks_of(plan);
+  const auto large = std::stable_partition(tasks.begin(), tasks.end(), [&](const Task& task) {
+    return plan.points[task.points].counts[task.end_count - 1] <= kPointsHeld;
+  });
   const std::vector<std::size_t> rows = first_rows(plan);
   Progress progress(label, points_in_all(plan), quiet);
-  with_threads(threads, [&](int) {
-    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t t) {
+  const auto run = [&](auto begin, auto end) {
+    tbb::parallel_for_each(begin, end, [&](const Task& task) {
       if (interrupted()) return;
-      const std::size_t p = tasks[t].points;
-      measure(plan, samplers, tasks[t], std::span(measured).subspan(rows[p], rows[p + 1] - rows[p]), progress);
+      const std::size_t p = task.points;
+      measure(plan, samplers, task, std::span(measured).subspan(rows[p], rows[p + 1] - rows[p]), progress);
     });
+  };
+  with_threads(threads, [&](int count) {
+    run(tasks.begin(), large);
+    tbb::task_arena(std::min(count, kLargeAtOnce)).execute([&] { run(large, tasks.end()); });
   });
   if (interrupted()) {
     fail(ExitCode::kInterrupted,
@@ -138,8 +148,9 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
   return measured;
 }
 
-std::string discrepancy_csv(const MeasuresPlan& plan, const Measurements& measured) {
-  if (plan.measures.empty()) return "";
+void write_discrepancy_csv(const std::filesystem::path& path, const MeasuresPlan& plan, const Measurements& measured) {
+  if (plan.measures.empty()) return;
+  AtomicFile file(path);
   CsvWriter csv({"sampler", "dims", "count", "replicate", "measure", "value", "lower", "upper", "method"});
   auto row = measured.begin();
   for (const MeasuredPoints& p : plan.points) {
@@ -150,9 +161,11 @@ std::string discrepancy_csv(const MeasuresPlan& plan, const Measurements& measur
           ++row;
         }
       }
+      file.write(csv.take_text());
     }
   }
-  return csv.text();
+  file.write(csv.take_text());  // the header alone where there are no rows
+  file.commit();
 }
 
 }  // namespace halfslope

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,8 +46,8 @@ using Measurements = std::vector<MeasuredValue>;
 Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& samplers, int threads,
                             const std::string& label, bool quiet);
 
-/// discrepancy.csv; empty where nothing was to be measured.
-std::string discrepancy_csv(const MeasuresPlan& plan, const Measurements& measured);
+/// Writes discrepancy.csv to `path`, an AtomicFile; nothing where no measure was asked for.
+void write_discrepancy_csv(const std::filesystem::path& path, const MeasuresPlan& plan, const Measurements& measured);
 
 /// For people: each sampler's largest N, means over replicates. Empty where nothing was measured.
 std::string measures_summary(const MeasuresPlan& plan, const Measurements& measured);

@@ -9,7 +9,7 @@
 namespace halfslope {
 namespace {
 
-// A set of these and the tree over it take 150 MB, and a second of time.
+// A set of these and the tree over it take 200 MB, and some seconds.
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 20;
 
 MeasuredPoints plan_points(const Spec& spec, const Sampler& sampler, std::vector<std::string>& left_out) {
