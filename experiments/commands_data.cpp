@@ -1,8 +1,6 @@
 // points, render and reference.
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
-#include <atomic>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <variant>
@@ -11,14 +9,13 @@
 #include "core/csv.h"
 #include "core/error.h"
 #include "core/exr.h"
-#include "estimators/pass_evaluator.h"
+#include "experiments/command_flags.h"
 #include "experiments/commands.h"
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
 #include "experiments/message.h"
-#include "experiments/parallel.h"
-#include "experiments/progress.h"
 #include "experiments/reference.h"
+#include "experiments/render.h"
 
 namespace halfslope {
 namespace {
@@ -27,67 +24,6 @@ namespace {
 constexpr std::size_t kFewPixels = 64;
 
 constexpr int kDone = static_cast<int>(ExitCode::kDone);
-
-// An error in a flag's value is an error of usage.
-template <class Make>
-auto flag(const char* name, Make make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    if (error.code() != ExitCode::kBadInput) throw;
-    fail(ExitCode::kUsage, "{}: {}", name, error.what());
-  }
-}
-
-Catalogue::Resolution parse_resolution(const std::string& text) {
-  Spec spec;
-  if (!text.empty()) apply_flag(spec, "resolution", text);
-  return spec.resolution;
-}
-
-Precision parse_precision(const std::string& text) {
-  Spec spec;
-  apply_flag(spec, "precision", text);
-  if (spec.precision.size() != 1) fail(ExitCode::kUsage, "--precision: one of f32, f64 at a time");
-  return spec.precision.front();
-}
-
-// A file's fault stays the file's (exit 3); an unknown name in a flag is the flag's.
-std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const std::string& scene,
-                                            const std::string& resolution) {
-  const auto size = parse_resolution(resolution);
-  if (scene.ends_with(".xml")) return catalogue.make_scene(scene, size);
-  return flag("--scene", [&] { return catalogue.make_scene(scene, size); });
-}
-
-template <class T>
-void render_rows(const IntegralSource& source, const Estimator& estimator, const RenderArguments& a,
-                 const Catalogue& catalogue, std::vector<double>& image) {
-  const auto rounds = a.samples / static_cast<std::uint64_t>(estimator.allocation.round());
-  const auto channels = static_cast<std::size_t>(source.channels());
-  Progress progress(a.scene, static_cast<double>(a.samples) * source.pixels(), a.quiet);
-  with_threads(a.threads, [&](int) {
-    tbb::parallel_for(0, source.height(), [&](int y) {
-      PassEvaluator<T> evaluator(catalogue.samplers.make(a.sampler), source.techniques(), estimator.allocation,
-                                 {estimator.heuristic}, {rounds}, source.channels());
-      for (int x = 0; x < source.width() && !interrupted(); ++x) {
-        const int p = y * source.width() + x;
-        const PixelIntegral pixel = source.pixel(p);
-        if (pixel.integral) {
-          evaluator.run(*pixel.integral, stream_key(a.seed, a.sampler, "run"), static_cast<std::uint32_t>(p),
-                        a.replicate);
-        }
-        for (std::size_t c = 0; c < channels; ++c) {
-          image[static_cast<std::size_t>(p) * channels + c] =
-              pixel.constant[c] + (pixel.integral ? evaluator.estimates(0, 0, static_cast<int>(c))[0] : 0.0);
-        }
-        progress.advance(static_cast<double>(a.samples));
-      }
-    });
-  });
-  if (interrupted()) fail(ExitCode::kInterrupted, "interrupted; nothing was written");
-  progress.finish();
-}
 
 }  // namespace
 
@@ -141,26 +77,19 @@ int points_command(const PointsArguments& a, const Catalogue& catalogue) {
 int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   const Precision precision = parse_precision(a.precision);
-  const auto source = make_source(catalogue, a.scene, a.resolution);
-  const Estimator estimator = flag("--estimator", [&] {
-    if (!a.estimator.empty()) return catalogue.estimators.parse(a.estimator, source->techniques());
-    // Both techniques of a rendered scene; what an integrand has.
-    return catalogue.estimators.parse(source->techniques().size() > 1 ? "balance" : source->techniques().front().name,
-                                      source->techniques());
-  });
-  const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(a.sampler); });
-  const Layout layout = estimator.allocation.layout(source->techniques());
-  if (layout.dims() > sampler->info().max_dims) {
-    fail(ExitCode::kUsage, "--sampler: '{}' has {} dimensions; '{}' on scene '{}' takes {}", a.sampler,
-         sampler->info().max_dims, a.estimator, a.scene, layout.dims());
-  }
-  if (const std::string problem = illegal_samples(estimator, *sampler, layout, a.samples); !problem.empty())
-    fail(ExitCode::kUsage, "--samples: {}", problem);
-  const auto channels = static_cast<std::size_t>(source->channels());
+  const auto source = make_source(catalogue, a.scene, parse_resolution(a.resolution));
+  RenderSettings settings;
+  settings.sampler = a.sampler;
+  settings.samples = a.samples;
+  settings.seed = a.seed;
+  settings.replicate = a.replicate;
+  settings.precision = precision;
+  settings.threads = a.threads;
+  settings.quiet = a.quiet;
+  settings.label = a.scene;
+  settings.estimator = check_render(*source, a.estimator, settings, catalogue);
   Reference picture;  // one replicate: values without a variance
-  picture.value.resize(static_cast<std::size_t>(source->pixels()) * channels);
-  precision == Precision::kF32 ? render_rows<float>(*source, estimator, a, catalogue, picture.value)
-                               : render_rows<double>(*source, estimator, a, catalogue, picture.value);
+  picture.value = render_replicate(*source, settings, catalogue);
   picture.variance.assign(picture.value.size(), 0);
   ExrImage image = reference_image(*source, picture);
   std::erase_if(image.channels, [](const ExrImage::Channel& c) { return c.name.starts_with("variance"); });
@@ -172,7 +101,7 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
 
 int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
-  const auto source = make_source(catalogue, a.scene, a.resolution);
+  const auto source = make_source(catalogue, a.scene, parse_resolution(a.resolution));
   std::vector<int> pixels(static_cast<std::size_t>(source->pixels()));
   for (std::size_t p = 0; p < pixels.size(); ++p) pixels[p] = static_cast<int>(p);
   ReferenceGoal goal;

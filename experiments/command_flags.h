@@ -1,0 +1,35 @@
+// Flags that several commands have: their values, and errors in them as errors of usage.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/error.h"
+#include "core/integral.h"
+#include "experiments/catalogue.h"
+#include "experiments/spec.h"
+
+namespace halfslope {
+
+/// What `make` returns. An error in a flag's value is an error of usage that begins with the flag's name.
+template <class Make>
+auto flag(const char* name, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kBadInput) throw;
+    fail(ExitCode::kUsage, "{}: {}", name, error.what());
+  }
+}
+
+/// "WIDTH,HEIGHT" of --resolution; null where it is empty.
+Catalogue::Resolution parse_resolution(const std::string& text);
+
+/// --precision of a command that takes one at a time.
+Precision parse_precision(const std::string& text);
+
+/// The scene of --scene: a file's fault stays the file's (exit 3); an unknown name in a flag is the flag's.
+std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const std::string& scene,
+                                            const Catalogue::Resolution& resolution);
+
+}  // namespace halfslope
