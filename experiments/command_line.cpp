@@ -57,7 +57,8 @@ std::string bash_completion(const CLI::App& app) {
          "    --sampler|--samplers) words=\"$(halfslope list samplers --names)\" ;;\n"
          "    --scene) words=\"$(halfslope list scenes --names)\" ;;\n"
          "    --measures) words=\"$(halfslope list measures --names) none\" ;;\n"
-         "    list) words=\"samplers estimators scenes measures statuses\" ;;\n"
+         "    figure) words=\"$(halfslope list figures --names)\" ;;\n"
+         "    list) words=\"samplers estimators scenes measures figures statuses\" ;;\n"
          "    *) case \"${COMP_WORDS[1]}\" in\n" +
          cases + "    *) words=\"" + commands +
          "\" ;;\n    esac ;;\n  esac\n"
@@ -95,8 +96,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
 
   ListArguments list;
   bool names_only = false;
-  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes, measures and statuses");
-  list_app->add_option("what", list.what, "samplers, estimators, scenes, measures or statuses");
+  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes, measures, figures and statuses");
+  list_app->add_option("what", list.what, "samplers, estimators, scenes, measures, figures or statuses");
   list_app->add_flag("--json", list.json, "as JSON");
   list_app->add_flag("--names", names_only, "names alone, a line each");
 
@@ -151,6 +152,32 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   reference_app->add_flag("--json", reference.json, "as JSON");
   reference_app->add_flag("--quiet", reference.quiet, "no progress");
 
+  FigureArguments figure;
+  CLI::App* figure_app = app.add_subcommand("figure", "draw a figure for print: PNG or SVG");
+  figure_app->add_option("name", figure.name, "see `halfslope list figures`")->required()->type_name("NAME");
+  figure_app->add_option("--out,-o", figure.out, "FILE.png (288 pixels an inch) or FILE.svg (default: NAME.png)")
+      ->type_name("FILE");
+  for (const auto& [spelling, help] : std::vector<std::pair<std::string, std::string>>{
+           {"--run", "convergence: the run folder to draw"},
+           {"--scene", "veach, glossy: which scene; convergence: only these scenes"},
+           {"--estimators,--estimator", "veach, glossy: a picture each; convergence: only these"},
+           {"--samplers,--sampler", "veach, points, glossy: a picture each; convergence: only these"},
+           {"--precision", "convergence: only f32 or f64"},
+           {"--samples", "veach, glossy: N a pixel; points: how many points"},
+           {"--resolution", "veach, glossy: WIDTH,HEIGHT of each picture"},
+           {"--exposure", "veach, glossy: radiance is multiplied by 2^STOPS (default 0)"},
+           {"--seed", "veach, points, glossy: of the random numbers (default 1)"},
+           {"--replicate", "veach, points, glossy: which randomisation (default 0)"}}) {
+    const std::string key = spelling.substr(2, spelling.find(',') - 2);
+    figure_app
+        ->add_option_function<std::string>(
+            spelling, [&figure, key](const std::string& value) { figure.keys[key] = value; }, help)
+        ->type_name("VALUE");
+  }
+  figure_app->add_option("--threads", figure.threads, "threads; the figure does not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 4096));
+  figure_app->add_flag("--quiet", figure.quiet, "no progress");
+
   CLI::App* completion_app =
       app.add_subcommand("completion", "print a bash completion script: source <(halfslope completion)");
 
@@ -177,6 +204,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   if (points_app->parsed()) return points_command(points, catalogue);
   if (render_app->parsed()) return render_command(render, catalogue);
   if (reference_app->parsed()) return reference_command(reference, catalogue);
+  if (figure_app->parsed()) return figure_command(figure, catalogue);
   if (completion_app->parsed()) fmt::print("{}", bash_completion(app));
   return 0;
 }

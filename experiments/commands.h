@@ -22,7 +22,7 @@ struct RunArguments {
 int run_command(const RunArguments& arguments, const Catalogue& catalogue);
 
 struct ListArguments {
-  std::string what;  ///< samplers, estimators, scenes, measures, statuses, or empty for all
+  std::string what;  ///< samplers, estimators, scenes, measures, figures, statuses, or empty for all
   bool json = false, names_only = false;
 };
 int list_command(const ListArguments& arguments, const Catalogue& catalogue);
@@ -54,5 +54,13 @@ struct ReferenceArguments {
   bool quiet = false, no_cache = false, json = false;
 };
 int reference_command(const ReferenceArguments& arguments, const Catalogue& catalogue);
+
+struct FigureArguments {
+  std::string name, out;                    ///< out: NAME.png where empty
+  std::map<std::string, std::string> keys;  ///< flags that belong to some of the figures
+  int threads = 0;
+  bool quiet = false;
+};
+int figure_command(const FigureArguments& arguments, const Catalogue& catalogue);
 
 }  // namespace halfslope

@@ -10,6 +10,7 @@
 #include "estimators/estimator.h"
 #include "experiments/commands.h"
 #include "experiments/engine.h"
+#include "experiments/figures.h"
 #include "experiments/images.h"
 #include "experiments/interrupt.h"
 #include "experiments/joined.h"
@@ -47,6 +48,8 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
       rows.push_back({m.name, m.description, m.reference,
                       any ? "any number of dimensions" : fmt::format("at most {} dimensions", m.max_dims)});
     }
+  } else if (what == "figures") {
+    for (const FigureInfo& f : figure_catalogue()) rows.push_back({f.name, f.description, f.reference, ""});
   } else {
     rows = {{"ok", "nothing to say against the row's numbers", "", ""},
             {"few-replicates", "below 16 replicates: the intervals are not certified", "", ""},
@@ -108,7 +111,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
 }
 
 int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
-  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "measures", "statuses"};
+  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "measures", "figures", "statuses"};
   if (!arguments.what.empty() && std::find(kinds.begin(), kinds.end(), arguments.what) == kinds.end()) {
     fail(ExitCode::kUsage, "there is no list of '{}'{}; allowed: {}", arguments.what,
          did_you_mean(arguments.what, kinds), joined(kinds));

@@ -1,0 +1,46 @@
+// The figures: each draws a page (analysis/canvas.h) from its flags.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis/canvas.h"
+#include "experiments/catalogue.h"
+#include "experiments/spec.h"
+
+namespace halfslope {
+
+/// Width of every page in points: that of two columns, or of the text of a book (7 inches).
+inline constexpr double kPageWidth = 504;
+/// Pixels of a PNG in a point: 288 to the inch.
+inline constexpr int kPixelsPerPoint = 4;
+
+/// What a figure is drawn from. Keys that were not given are empty in `spec`; each figure has defaults of its own.
+struct FigureRequest {
+  std::string name;
+  Spec spec;  ///< scene, estimators, samplers, samples (one N), seed, resolution, precision
+  std::uint32_t replicate = 0;
+  std::optional<double> exposure;  ///< stops
+  std::string run;                 ///< run folder
+  int threads = 0;
+  bool quiet = false;
+};
+
+/// What `list figures` says of one, and the flags that it takes beside --out and --quiet.
+struct FigureInfo {
+  std::string name, description, reference;
+  std::vector<std::string> flags;
+  Canvas (*draw)(const FigureRequest& request, const Catalogue& catalogue);
+};
+std::vector<FigureInfo> figure_catalogue();
+
+/// The first N points of each sampler in a square.
+Canvas draw_points_figure(const FigureRequest& request, const Catalogue& catalogue);
+/// `veach`: a picture of the scene by each estimator at equal N. `glossy`: by each sampler, with a part of each
+/// magnified below.
+Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catalogue);
+/// RMSE against N of a run folder.
+Canvas draw_convergence_figure(const FigureRequest& request, const Catalogue& catalogue);
+
+}  // namespace halfslope
