@@ -37,7 +37,7 @@ TEST_F(Commands, NamesNeedNotBeUtf8) {
 TEST_F(Commands, EveryCommandHasHelp) {
   const Ended top = command({"--help"});
   EXPECT_EQ(top.code, 0);
-  for (const std::string name : {"run", "list", "points", "render", "reference", "completion"}) {
+  for (const std::string name : {"run", "list", "points", "render", "reference", "figure", "completion"}) {
     EXPECT_THAT(top.out, HasSubstr("\n  " + name + " "));
     const Ended help = command({name, "--help"});
     EXPECT_EQ(help.code, 0);
@@ -54,7 +54,7 @@ TEST_F(Commands, EveryCommandHasHelp) {
 
 TEST_F(Commands, ListsAreTablesAndJson) {
   const auto json = nlohmann::json::parse(command({"list", "--json"}).out);
-  for (const char* kind : {"samplers", "estimators", "scenes", "measures", "statuses"}) {
+  for (const char* kind : {"samplers", "estimators", "scenes", "measures", "figures", "statuses"}) {
     ASSERT_TRUE(json.contains(kind));
     const Ended table = command({"list", kind});
     for (const auto& entry : json[kind]) {
