@@ -148,7 +148,7 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
   if (samplers.size() == 1) caption += fmt::format(" ({} points)", samplers.front());
   if (estimators.size() == 1) caption += fmt::format(" ({})", estimators.front());
   caption += fmt::format(", seed {}; ", spec.seed);
-  if (stops != 0) caption += fmt::format("exposure {:+g} stops, ", stops);
+  if (stops != 0) caption += fmt::format("exposure {}{:g} stops, ", stops < 0 ? "\u2212" : "+", std::fabs(stops));
   caption += "radiance above 1 clipped, sRGB.";
   const auto caption_lines = wrapped(caption, kSmallSize, row);
   Canvas canvas(margin + row + kEdge, bottom + kCaptionLine * (static_cast<double>(caption_lines.size()) + 0.7));

@@ -85,9 +85,9 @@ TEST_F(Figures, VeachShowsWhatRenderRenders) {
     }
   }
   EXPECT_THAT(texts(document),
-              AllOf(Contains("α = 0.005"), Contains("α = 0.1"), Contains("light radius"), Contains("0.033"),
+              AllOf(Contains("α = 0.005"), Contains("α = 0.1"), Contains("light radius"), Contains("0.9"),
                     Contains(HasSubstr("(c) power")), Contains(HasSubstr("N = 8 samples a pixel (independent points)")),
-                    Contains(HasSubstr("exposure -1.5 stops"))));
+                    Contains(HasSubstr("exposure −1.5 stops"))));
 }
 
 TEST_F(Figures, GlossyMagnifiesTheSamePartOfEach) {
