@@ -6,6 +6,7 @@
 
 #include "core/error.h"
 #include "experiments/joined.h"
+#include "experiments/left_out_counts.h"
 #include "experiments/reference.h"
 
 namespace halfslope {
@@ -54,7 +55,7 @@ std::vector<int> choose_pixels(int total, std::optional<std::int64_t> wanted) {
 
 // The counts of the spec that the allocation and the sampler can take.
 std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estimator, const Sampler& sampler,
-                                        const Layout& layout, Plan& plan) {
+                                        const Layout& layout, LeftOutCounts& left_out) {
   std::vector<std::uint64_t> legal, skipped;
   std::string why;
   for (const std::uint64_t n : spec.samples.counts) {
@@ -68,11 +69,7 @@ std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estim
       why = problem;
     }
   }
-  if (!skipped.empty()) {
-    plan.left_out.push_back(fmt::format("{}{} of the range's sample counts left out: {}", legal.empty() ? "all " : "",
-                                        skipped.size(), why));
-    plan.skips.push_back(plan.left_out.back());
-  }
+  if (!skipped.empty()) left_out.add(sampler.info().name, estimator.name, skipped, legal.empty(), why);
   return legal;
 }
 
@@ -244,6 +241,7 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   for (const auto& name : spec.samplers)
     samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));
 
+  LeftOutCounts left_out;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
     const PlannedScene& scene = plan.scenes[s];
     const bool whole = scene.pixels.size() == static_cast<std::size_t>(scene.source->pixels());
@@ -265,7 +263,7 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
           pass.sequence = info.sequence;
           pass.randomised = info.randomised;
           pass.allocation = allocation;
-          pass.samples = legal_counts(spec, scene.estimators[e], *sampler, layout, plan);
+          pass.samples = legal_counts(spec, scene.estimators[e], *sampler, layout, left_out);
           pass.replicates = info.randomised ? spec.replicates : 1;
           pass.key = stream_key(spec.seed, info.name, "run");
           if (pass.samples.empty()) continue;
@@ -281,6 +279,8 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
       }
     }
   }
+  for (auto& line : left_out.lines()) plan.skips.push_back(std::move(line));
+  for (auto& line : left_out.summary()) plan.left_out.push_back(std::move(line));
   if (plan.cells.empty()) {
     fail_at(spec, "samples",
             "nothing to measure: no sample count of the range is legal for any estimator and sampler. " +
