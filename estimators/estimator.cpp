@@ -77,10 +77,13 @@ Allocation parse_allocation(const std::string& name, std::string_view list, std:
   return allocation;
 }
 
+bool is_lighting(std::span<const Technique> techniques) {
+  return find(techniques, "light") && find(techniques, "bsdf");
+}
+
 // What a heuristic combines where its name does not say: light+bsdf, or whatever a scene without those two has.
 std::string default_techniques(std::span<const Technique> techniques) {
-  const bool usual = find(techniques, "light") && find(techniques, "bsdf");
-  if (usual || techniques.size() == 1) return "light+bsdf";
+  if (is_lighting(techniques) || techniques.size() == 1) return "light+bsdf";
   return fmt::format("{}", fmt::join(names_of(techniques), "+"));
 }
 
@@ -196,8 +199,8 @@ Estimator parse_estimator(const std::string& name, std::span<const Technique> te
 
 std::vector<std::string> default_estimators(std::span<const Technique> techniques) {
   std::vector<std::string> names = names_of(techniques);
-  if (names.size() == 1) return names;
-  for (const char* heuristic : {"average", "balance", "power", "cutoff", "maximum"}) names.emplace_back(heuristic);
+  if (is_lighting(techniques)) names = {"light", "bsdf"};
+  if (names.size() > 1) names.insert(names.end(), {"average", "balance", "power"});
   return names;
 }
 

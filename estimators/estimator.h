@@ -73,8 +73,8 @@ class EstimatorCatalogue {
 /// EstimatorCatalogue::parse with the built-in heuristics.
 Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques);
 
-/// The names of estimators that can be made of these techniques: each alone, and where there are several, every
-/// built-in heuristic over what it combines by default.
+/// What is run where an experiment names no estimators: light, bsdf, average, balance and power, or what a scene
+/// without those two techniques has.
 std::vector<std::string> default_estimators(std::span<const Technique> techniques);
 
 }  // namespace halfslope

@@ -23,7 +23,9 @@ std::string key_help(const std::string& key) {
   static const std::map<std::string, std::string> kHelp = {
       {"name", "the experiment's name; the default run folder is out/NAME"},
       {"scene", "see `halfslope list scenes`; or paths of Mitsuba 3 .xml files"},
-      {"estimators", "HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: all that the scene has"},
+      {"estimators",
+       "HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: light, bsdf, average, balance, "
+       "power, or what the scene has instead"},
       {"samplers", "see `halfslope list samplers`"},
       {"samples", "sample counts N: 4:1024 for the powers of two from 4 to 1024, or a list"},
       {"replicates", "independent repetitions that errors are measured over (default 64)"},

@@ -1,4 +1,6 @@
 // A scene: |x − y| over the unit square, whose integral is 1/3. Without the exact value a reference would be rendered.
+#pragma once
+
 #include <cmath>
 #include <memory>
 

@@ -49,7 +49,8 @@ TEST_F(CommandLine, AnIllegalNNamesItsLegalNeighbours) {
   // Inside a range it is skipped, and the plan says so.
   const Ended plan = run({"--estimators", "balance", "--samples", "1:4", "--dry-run"});
   EXPECT_EQ(plan.code, 0);
-  EXPECT_THAT(plan.out, AllOf(HasSubstr("1 of the range's sample counts"), HasSubstr("N = 1 does not divide")));
+  EXPECT_THAT(plan.out,
+              AllOf(HasSubstr("independent: N = 1 left out for balance: "), HasSubstr("N = 1 does not divide")));
   EXPECT_THAT(refusal({"--estimators", "balance", "--samples", "1:1"}, 2), HasSubstr("nothing to measure"));
 }
 

@@ -60,6 +60,22 @@ std::string floor_under_a_sphere(double rho, double radius) {
 </scene>)";
 }
 
+/// A scene that keeps its closed form to itself.
+class Secretive final : public IntegralSource {
+ public:
+  explicit Secretive(const IntegralSource& source) : source_(source) {}
+  int width() const override { return source_.width(); }
+  int height() const override { return source_.height(); }
+  int channels() const override { return source_.channels(); }
+  std::span<const Technique> techniques() const override { return source_.techniques(); }
+  std::size_t reference_techniques() const override { return source_.reference_techniques(); }
+  PixelIntegral pixel(int index) const override { return source_.pixel(index); }
+  std::string fingerprint() const override { return source_.fingerprint(); }
+
+ private:
+  const IntegralSource& source_;
+};
+
 bool same(const Reference& a, const Reference& b) {
   return a.value == b.value && a.variance == b.variance && a.mean == b.mean && a.mean_se == b.mean_se &&
          a.mean_variance == b.mean_variance && a.samples == b.samples && a.replicates == b.replicates &&
@@ -95,13 +111,17 @@ TEST(Reference, ARenderedOneIsWithinItsErrorOfTheClosedForm) {
   const auto source = Catalogue::built_in().make_scene((folder / "floor.xml").string(), {});
   ASSERT_EQ(source->pixels(), 3);
   ASSERT_EQ(source->channels(), 1);
-  const Reference reference = render(*source, {.samples = 4096, .compare_samples = 1024, .relative_error = 1e-4});
+  const Reference known = render(*source, {});
+  EXPECT_EQ(known.origin, "closed form");
+  const Reference reference =
+      render(Secretive(*source), {.samples = 4096, .compare_samples = 1024, .relative_error = 1e-4});
   EXPECT_EQ(reference.samples, 4096u);
   // Each of three pixels fails with a probability of 3e-7.
   const double t = t_quantile(1 - 1.5e-7, static_cast<double>(reference.replicates - 1));
   double relative = 0;
   for (int x = 0; x < 3; ++x) {
     const double exact = 7 * 0.5 * 0.25 * 0.25 * 2 / std::pow(4 + x * x, 1.5);
+    EXPECT_NEAR(known.value[static_cast<std::size_t>(x)] / exact, 1, 1e-14);
     const double se = std::sqrt(reference.variance[static_cast<std::size_t>(x)]);
     EXPECT_GT(se, 0);
     EXPECT_NEAR(reference.value[static_cast<std::size_t>(x)], exact, t * se);
