@@ -17,9 +17,15 @@
 // the ratios r_k = c_k p_k / max_l c_l p_l, which lie in [0, 1] with one of them 1: sums lie in [1, n], nothing
 // overflows, and what underflows is a weight that is 0 to the last bit. Where every density is 0 each weight is 1/n;
 // there all ratios are the number before 1, which says so.
+//
+// Cutoff and maximum jump, and Σ_i w_i(x) = 1 must hold however each technique's sample came by the densities at x. Two
+// densities that are the same function of x (by area and by the cosine on the inside of a sphere, say) differ by
+// rounding, one way at one technique's samples and another way at the other's, and a jump there is a bias. So these two
+// trust half of a ratio's digits: what is within kNearTie of a threshold has reached it.
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "core/packet.h"
 #include "estimators/kernels.h"
@@ -46,6 +52,10 @@ inline F ratio_power(const F& r, double beta) {
 /// The ratio of each technique where every density is 0.
 template <class T>
 inline constexpr T kAllZero = T(1) - std::numeric_limits<T>::epsilon() / 2;
+
+/// What a ratio is compared with, over what it is meant to reach.
+template <class T>
+inline constexpr T kNearTie = std::is_same_v<T, float> ? T(1 - 0x1p-11) : T(1 - 0x1p-26);
 
 /// Turns the scaled densities c_k p_k into the ratios r_k, in place. An infinite density is the largest.
 template <class F>
@@ -123,7 +133,7 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
       return own / sum;
     }
     case HeuristicKind::kCutoff: {
-      const F alpha(static_cast<T>(heuristic.parameter)), zero(T(0));
+      const F alpha(static_cast<T>(heuristic.parameter) * kNearTie<T>), zero(T(0));
       F sum = zero;
       for (int k = 0; k < techniques; ++k) sum = sum + select(ratios[k] >= alpha, ratios[k], zero);
       const F own = select(ratios[i] >= alpha, ratios[i] / sum, zero);
@@ -131,9 +141,9 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
       return select(any_density(ratios, techniques), own, equal) + nan_of(ratios, techniques);
     }
     case HeuristicKind::kMaximum: {
-      const F zero(T(0)), one(T(1));
-      F own = select(ratios[i] == one, one, zero);
-      for (int k = 0; k < i; ++k) own = select(ratios[k] == one, zero, own);
+      const F zero(T(0)), one(T(1)), most(kNearTie<T>);
+      F own = select(ratios[i] >= most, one, zero);
+      for (int k = 0; k < i; ++k) own = select(ratios[k] >= most, zero, own);
       const F equal(T(1) / static_cast<T>(techniques));
       return select(any_density(ratios, techniques), own, equal) + nan_of(ratios, techniques);
     }

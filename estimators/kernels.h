@@ -27,7 +27,8 @@ struct LightingCall {
 enum class HeuristicKind : std::uint8_t { kSingle, kAverage, kBalance, kPower, kCutoff, kMaximum, kCustom };
 
 /// The weight in [0, 1] of technique i, from the ratios r_k = c_k p_k / max_l c_l p_l of all `techniques` (where every
-/// density is 0, all ratios are equal).
+/// density is 0, all ratios are equal). Equal densities may differ by rounding, and not the same way at each
+/// technique's samples: a weight that jumps must not jump there.
 using WeightFunction = double (*)(const double* ratios, int techniques, int i);
 
 struct Heuristic {

@@ -2,6 +2,7 @@
 // the fold of each instruction set.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -18,17 +19,35 @@ namespace halfslope {
 inline constexpr Heuristic kAverage = {HeuristicKind::kAverage, 0}, kBalance = {HeuristicKind::kBalance, 0};
 inline constexpr double kBetas[] = {0.5, 1, 2, 3, 4, 7.3, 1000};
 
+inline constexpr double kAlphas[] = {0, 0.1, 0.5, 0.8, 1};
+inline constexpr Heuristic kMaximum = {HeuristicKind::kMaximum, 0};
+
 inline Heuristic power(double beta) { return {HeuristicKind::kPower, beta}; }
+inline Heuristic cutoff(double alpha) { return {HeuristicKind::kCutoff, alpha}; }
 
 inline std::vector<Heuristic> every_heuristic() {
   std::vector<Heuristic> all = {kAverage, kBalance};
   for (const double beta : kBetas) all.push_back(power(beta));
+  for (const double alpha : kAlphas) all.push_back(cutoff(alpha));
+  all.push_back(kMaximum);
   return all;
 }
 
 inline std::string name(const Heuristic& h) {
-  if (h.kind != HeuristicKind::kPower) return h.kind == HeuristicKind::kAverage ? "average" : "balance";
-  return "power:" + std::to_string(h.parameter);
+  switch (h.kind) {
+    case HeuristicKind::kAverage:
+      return "average";
+    case HeuristicKind::kBalance:
+      return "balance";
+    case HeuristicKind::kPower:
+      return "power:" + std::to_string(h.parameter);
+    case HeuristicKind::kCutoff:
+      return "cutoff:" + std::to_string(h.parameter);
+    case HeuristicKind::kMaximum:
+      return "maximum";
+    default:
+      return "custom";
+  }
 }
 
 /// [technique][point]; the number of points is a multiple of kLanes.
@@ -148,6 +167,21 @@ double exact_weight(const Heuristic& heuristic, const Table<T>& densities, std::
   for (const auto& row : densities) none = none && row[p] == T(0);
   if (none) return static_cast<double>(1 / n);
   if (densities[i][p] == T(0)) return 0;
+  // Half the digits of T decide whether a threshold is reached.
+  long double largest = 0;
+  for (const auto& row : densities) largest = std::max(largest, static_cast<long double>(row[p]));
+  const long double near = (1 - (std::is_same_v<T, float> ? 0x1p-11L : 0x1p-26L)) * largest;
+  if (heuristic.kind == HeuristicKind::kMaximum) {
+    std::size_t first = 0;
+    while (densities[first][p] < near) ++first;
+    return i == first ? 1 : 0;
+  }
+  if (heuristic.kind == HeuristicKind::kCutoff) {
+    const long double least = heuristic.parameter * near;
+    long double kept = 0;
+    for (const auto& row : densities) kept += row[p] >= least ? static_cast<long double>(row[p]) : 0;
+    return densities[i][p] >= least ? static_cast<double>(densities[i][p] / kept) : 0;
+  }
   long double sum = 0;
   const long double own = std::log(static_cast<long double>(densities[i][p]));
   for (const auto& row : densities) {

@@ -53,8 +53,10 @@ TYPED_TEST(Weights, AllZeroAndTiesAreShared) {
       for (std::size_t n = 2; n <= 5; ++n) {
         for (const T density : {T(0), T(1e-30), T(0.3), T(1e30), std::numeric_limits<T>::max()}) {
           const Table<T> weights = way.weights(heuristic, Table<T>(n, std::vector<T>(kLanes, density)));
-          for (const auto& row : weights) {
-            for (const T w : row) ASSERT_NEAR(w, 1.0 / static_cast<double>(n), ulp) << way.name << name(heuristic);
+          const bool first_takes_all = heuristic.kind == HeuristicKind::kMaximum && density > 0;
+          for (std::size_t i = 0; i < n; ++i) {
+            const double share = first_takes_all ? (i == 0 ? 1 : 0) : 1.0 / static_cast<double>(n);
+            for (const T w : weights[i]) ASSERT_NEAR(w, share, ulp) << way.name << name(heuristic);
           }
         }
       }
@@ -62,9 +64,10 @@ TYPED_TEST(Weights, AllZeroAndTiesAreShared) {
       Table<T> two_of_three(3, std::vector<T>(kLanes, T(7)));
       two_of_three[1].assign(kLanes, T(0));
       const Table<T> weights = way.weights(heuristic, two_of_three);
-      EXPECT_EQ(weights[0][0], T(0.5));
+      const bool maximum = heuristic.kind == HeuristicKind::kMaximum;
+      EXPECT_EQ(weights[0][0], maximum ? T(1) : T(0.5));
       EXPECT_EQ(weights[1][0], T(0));
-      EXPECT_EQ(weights[2][0], T(0.5));
+      EXPECT_EQ(weights[2][0], maximum ? T(0) : T(0.5));
     }
   }
 }
@@ -113,7 +116,7 @@ TYPED_TEST(Weights, NotANumberIsNeverSwallowed) {
     for (const Way<T>& way : every_way<T>()) {
       for (const Heuristic& heuristic : every_heuristic()) {
         if (heuristic.kind == HeuristicKind::kAverage) continue;  // asks no density
-        for (const std::size_t n : {2u, 3u}) {
+        for (std::size_t n = 2; n <= 5; ++n) {
           for (std::size_t k = 0; k < n; ++k) {
             Table<T> densities(n, std::vector<T>(kLanes, T(2)));
             densities[k].assign(kLanes, bad);
@@ -125,6 +128,77 @@ TYPED_TEST(Weights, NotANumberIsNeverSwallowed) {
             ASSERT_TRUE(std::isnan(sum) || limit)
                 << way.name << ' ' << name(heuristic) << ' ' << bad << " of technique " << k << " of " << n;
           }
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(Weights, InfiniteDensitiesShareWhatThereIs) {
+  using T = TypeParam;
+  for (const Way<T>& way : every_way<T>()) {
+    for (const Heuristic& heuristic : every_heuristic()) {
+      if (heuristic.kind == HeuristicKind::kAverage) continue;
+      for (std::size_t n = 3; n <= 5; ++n) {
+        Table<T> densities(n, std::vector<T>(kLanes, std::numeric_limits<T>::max()));
+        densities[1].assign(kLanes, std::numeric_limits<T>::infinity());
+        densities[n - 1] = densities[1];
+        const Table<T> weights = way.weights(heuristic, densities);
+        const bool maximum = heuristic.kind == HeuristicKind::kMaximum;
+        for (std::size_t i = 0; i < n; ++i) {
+          const bool infinite = i == 1 || i == n - 1;
+          const T share = maximum ? T(i == 1 ? 1 : 0) : T(infinite ? 0.5 : 0);
+          ASSERT_EQ(weights[i][0], share) << way.name << ' ' << name(heuristic) << ' ' << i << " of " << n;
+        }
+      }
+    }
+  }
+}
+
+TYPED_TEST(Weights, CutoffGoesFromBalanceToMaximum) {
+  using T = TypeParam;
+  for (std::size_t n = 2; n <= 5; ++n) {
+    Table<T> densities = random_densities<T>(n, 512, 40 + n);
+    for (std::size_t p = 0; p < 512; ++p) densities[n - 1][p] += T(1);  // none all zero
+    for (const Way<T>& way : every_way<T>()) {
+      EXPECT_EQ(way.weights(cutoff(0), densities), way.weights(kBalance, densities)) << way.name;
+      EXPECT_EQ(way.weights(cutoff(1), densities), way.weights(kMaximum, densities)) << way.name;  // no two are alike
+    }
+  }
+}
+
+TYPED_TEST(Weights, CutoffDropsWhatIsBelowItsThresholdOnly) {
+  using T = TypeParam;
+  const Table<T> densities = {std::vector<T>(kLanes, T(4)), std::vector<T>(kLanes, T(4.01)),
+                              std::vector<T>(kLanes, T(8)), std::vector<T>(kLanes, T(3.99))};
+  for (const Way<T>& way : every_way<T>()) {
+    const Table<T> weights = way.weights(cutoff(0.5), densities);
+    EXPECT_NEAR(weights[0][0], 4 / 16.01, 1e-6) << way.name;
+    EXPECT_NEAR(weights[1][0], 4.01 / 16.01, 1e-6) << way.name;
+    EXPECT_NEAR(weights[2][0], 8 / 16.01, 1e-6) << way.name;
+    EXPECT_EQ(weights[3][0], T(0)) << way.name;
+  }
+}
+
+TYPED_TEST(Weights, RoundingDecidesNoTie) {
+  // The same densities but for a few ulps, which fall differently at each technique's samples: whoever came by them,
+  // the weights must be those of the tie, or their expectations do not sum to 1.
+  using T = TypeParam;
+  const T one_way = T(1) + 8 * std::numeric_limits<T>::epsilon(), other_way = 1 / one_way;
+  for (const Way<T>& way : every_way<T>()) {
+    for (std::size_t n = 2; n <= 5; ++n) {
+      for (const T off : {other_way, one_way}) {
+        Table<T> densities(n, std::vector<T>(kLanes, T(3)));
+        densities[n - 1].assign(kLanes, T(3) * off);
+        const Table<T> maximum = way.weights(kMaximum, densities), all = way.weights(cutoff(1), densities);
+        EXPECT_EQ(maximum[0][0], T(1)) << way.name;
+        EXPECT_EQ(maximum[n - 1][0], T(0)) << way.name;
+        densities[n - 1].assign(kLanes, T(1.5) * off);
+        const Table<T> half = way.weights(cutoff(0.5), densities);
+        for (std::size_t i = 0; i < n; ++i) {
+          const auto count = static_cast<double>(n);
+          EXPECT_NEAR(all[i][0], 1 / count, 1e-5) << way.name;
+          EXPECT_NEAR(half[i][0], (i == n - 1 ? 0.5 : 1) / (count - 0.5), 1e-5) << way.name;
         }
       }
     }
