@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <variant>
 
 namespace halfslope {
@@ -77,8 +78,13 @@ void copy_bsdf(const Bsdf& bsdf, PixelData<T>& data) {
   if (bsdf.kind != BsdfKind::kPhong) return;
   copy(bsdf.specular, data.specular);
   data.exponent = static_cast<T>(bsdf.exponent);
+  // A whole number of the steps in which T's coordinates come, so that exactly this share of them is below it; neither
+  // all nor none where both parts reflect.
+  constexpr double kSteps = std::is_same_v<T, float> ? 0x1p24 : 0x1p53;
   const double specular = luminance(bsdf.specular), diffuse = luminance(bsdf.reflectance);
-  data.specular_share = static_cast<T>(specular / (specular + diffuse));
+  const double least = specular > 0 ? 1 : 0, most = diffuse > 0 ? kSteps - 1 : kSteps;
+  const double steps = std::round(specular / (specular + diffuse) * kSteps);
+  data.specular_share = static_cast<T>(std::clamp(steps, least, most) / kSteps);
 }
 
 }  // namespace
