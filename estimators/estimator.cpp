@@ -131,8 +131,11 @@ EstimatorCatalogue EstimatorCatalogue::built_in() {
 }
 
 void EstimatorCatalogue::add(EstimatorInfo info, WeightFunction weight) {
-  for (const Entry& entry : entries_) assert_equal(entry.name == info.name, false, "a heuristic of that name");
-  const bool plain = !info.name.empty() && info.name.find_first_of(":@+*,. ") == std::string::npos;
+  for (const EstimatorInfo& taken : list()) {
+    assert_equal(taken.name.substr(0, taken.name.find('[')) == info.name, false, "an estimator of that name");
+  }
+  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
+  const bool plain = !info.name.empty() && info.name.find_first_not_of(kPlain) == std::string::npos;
   assert_equal(plain, true, "a heuristic's name without punctuation");
   assert_equal(weight != nullptr, true, "a heuristic has a weight function");
   const std::string name = info.name;

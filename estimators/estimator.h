@@ -42,8 +42,8 @@ class EstimatorCatalogue {
  public:
   static EstimatorCatalogue built_in();
 
-  /// Adds a heuristic without parameters under info.name, which is letters, digits, '-' and '_'; a name that is taken
-  /// is an assertion failure. `weight` is called from several threads, for each sample of each technique.
+  /// Adds a heuristic without parameters under info.name, which is letters, digits, '-' and '_'; a name that list()
+  /// has already is an assertion failure. `weight` is called from several threads, for each sample of each technique.
   void add(EstimatorInfo info, WeightFunction weight);
   /// Techniques first, then heuristics in the order they were added.
   std::vector<EstimatorInfo> list() const;
