@@ -121,7 +121,9 @@ std::optional<Color> DirectLighting::closed_form(int pixel) const {
     for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
       if (may_shade(scene_, receiver, light, static_cast<int>(i))) return std::nullopt;
     }
-    const auto factor = form_factor(primitive, seen.position, seen.normal);
+    // Only the inside of a sphere is lit by itself: from all around.
+    const bool own = light == seen.primitive;
+    const auto factor = own ? std::optional(1.0) : form_factor(primitive, seen.position, seen.normal);
     if (!factor) return std::nullopt;
     for (int c = 0; c < 3; ++c) {
       sum[static_cast<std::size_t>(c)] += bsdf.reflectance[c] * primitive.radiance[c] * *factor;
