@@ -82,6 +82,21 @@ TEST(DirectLighting, TheLightChoiceTakesADimensionOnlyWhereThereIsAChoice) {
   EXPECT_THAT(layouts({floor_tile(), light, other}), ElementsAre(1, 2));
 }
 
+TEST(DirectLighting, TheSurfaceChoiceTakesADimensionWhereThereAreTwoSurfaces) {
+  const Primitive light = emitting(sphere({0, 0, 2}, 0.5), grey(1));
+  const DirectLighting several = lighting(scene_of({floor_tile(), light}, {looking({0, 0, 1}, kOrigin)}));
+  std::vector<std::string> names;
+  for (const Technique& technique : several.techniques()) names.push_back(technique.name);
+  EXPECT_THAT(names, ElementsAre("light", "bsdf", "hemisphere", "cosine", "surface"));
+  EXPECT_THAT(several.techniques()[2].layout.groups, ElementsAre(2));
+  EXPECT_THAT(several.techniques()[3].layout.groups, ElementsAre(2));
+  EXPECT_THAT(several.techniques()[4].layout.groups, ElementsAre(1, 2));
+  // One surface alone: the inside of a sphere, which lights itself.
+  const Primitive shell = made_of(emitting(sphere(kOrigin, 1, true), grey(1)), diffuse(grey(0.5)));
+  const DirectLighting one = lighting(scene_of({shell}, {looking(kOrigin, {0, 0, 1})}));
+  EXPECT_THAT(one.techniques()[4].layout.groups, ElementsAre(2));
+}
+
 TEST(DirectLighting, SkipsSayWhatIsNotDoneAndWhy) {
   const Primitive light = emitting(sphere({0, 0, 2}, 0.5), grey(1));
   const Ray at_floor = looking({0.5, 0.5, 1}, {0.5, 0.5, 0}), at_nothing = looking({3, 3, 3}, {3, 3, 9});
@@ -160,6 +175,11 @@ TEST(DirectLighting, TheFingerprintKnowsAllThatAnIntegralDependsOn) {
   change([](Scene& s) { s.primitives[0].bsdf = conductor(0.5, grey(1), grey(2)); });
   change([](Scene& s) { s.primitives[0].bsdf = conductor(0.5, grey(1), grey(3)); });
   change([](Scene& s) { s.primitives[0].bsdf = conductor(0.5, grey(2), grey(2)); });
+  change([](Scene& s) { std::get<Flat>(s.primitives[0].shape).outline = Flat::Outline::kDisk; });
+  change([](Scene& s) { s.primitives[0].bsdf = phong(grey(0.5), grey(0.25), 10); });
+  change([](Scene& s) { s.primitives[0].bsdf = phong(grey(0.25), grey(0.25), 10); });
+  change([](Scene& s) { s.primitives[0].bsdf = phong(grey(0.5), grey(0.5), 10); });
+  change([](Scene& s) { s.primitives[0].bsdf = phong(grey(0.5), grey(0.25), 11); });
   change([](Scene& s) { s.sensor.rays[0] = looking({0.5, 0.5, 2}, kOrigin); });
   change([](Scene& s) { s.sensor.rays.push_back(s.sensor.rays[0]); });
   change([](Scene& s) { s.primitives.push_back(sphere({9, 9, 9}, 1)); });

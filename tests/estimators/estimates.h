@@ -23,26 +23,50 @@ struct Request {
   std::uint64_t seed = 1;
 };
 
-/// Estimates of one pixel by channel and replicate, without the pixel's constant part.
+/// By channel and replicate.
+using Estimates = std::vector<std::vector<double>>;
+
+/// Estimates of one pixel, without its constant part, by each of the estimators, which draw the same samples;
+/// request.estimator is not read.
 template <class T>
-std::vector<std::vector<double>> estimate(const IntegralSource& source, int pixel, const Request& request) {
-  const Estimator estimator = parse_estimator(request.estimator, source.techniques());
-  PassEvaluator<T> evaluator(SamplerCatalogue::built_in().make(request.sampler), source.techniques(),
-                             estimator.allocation, {estimator.heuristic}, {request.rounds}, source.channels());
+std::vector<Estimates> estimate_together(const IntegralSource& source, int pixel,
+                                         const std::vector<std::string>& estimators, const Request& request,
+                                         const EstimatorCatalogue& catalogue = EstimatorCatalogue::built_in()) {
+  std::vector<Heuristic> heuristics;
+  Allocation allocation;
+  for (const std::string& name : estimators) {
+    const Estimator estimator = catalogue.parse(name, source.techniques());
+    EXPECT_TRUE(heuristics.empty() || estimator.allocation == allocation) << name;
+    heuristics.push_back(estimator.heuristic);
+    allocation = estimator.allocation;
+  }
+  PassEvaluator<T> evaluator(SamplerCatalogue::built_in().make(request.sampler), source.techniques(), allocation,
+                             heuristics, {request.rounds}, source.channels());
   const PixelIntegral integral = source.pixel(pixel);
-  std::vector<std::vector<double>> estimates(static_cast<std::size_t>(source.channels()));
+  std::vector<Estimates> estimates(heuristics.size(), Estimates(static_cast<std::size_t>(source.channels())));
   if (!integral.integral) {  // nothing but the constant part
-    return {estimates.size(), std::vector<double>(static_cast<std::size_t>(request.replicates), 0.0)};
+    for (Estimates& of_one : estimates) {
+      for (auto& channel : of_one) channel.assign(static_cast<std::size_t>(request.replicates), 0.0);
+    }
+    return estimates;
   }
   const StreamKey key = stream_key(request.seed, request.sampler, "test");
   for (int replicate = 0; replicate < request.replicates; replicate += kLanes) {
     evaluator.run(*integral.integral, key, static_cast<std::uint32_t>(pixel), static_cast<std::uint32_t>(replicate));
-    for (std::size_t c = 0; c < estimates.size(); ++c) {
-      const double* lanes = evaluator.estimates(0, 0, static_cast<int>(c));
-      estimates[c].insert(estimates[c].end(), lanes, lanes + kLanes);
+    for (std::size_t h = 0; h < estimates.size(); ++h) {
+      for (std::size_t c = 0; c < estimates[h].size(); ++c) {
+        const double* lanes = evaluator.estimates(h, 0, static_cast<int>(c));
+        estimates[h][c].insert(estimates[h][c].end(), lanes, lanes + kLanes);
+      }
     }
   }
   return estimates;
+}
+
+/// Estimates of one pixel, without its constant part.
+template <class T>
+Estimates estimate(const IntegralSource& source, int pixel, const Request& request) {
+  return estimate_together<T>(source, pixel, {request.estimator}, request)[0];
 }
 
 struct MeanAndError {

@@ -38,10 +38,12 @@ TEST(ParseEstimator, HeuristicsTakeLightAndBsdfUnlessToldOtherwise) {
     const char* name;
     HeuristicKind kind;
     double parameter;
-  } cases[] = {{"average", HeuristicKind::kAverage, 0},   {"balance", HeuristicKind::kBalance, 0},
-               {"power", HeuristicKind::kPower, 2},       {"power:3", HeuristicKind::kPower, 3},
-               {"power:0.5", HeuristicKind::kPower, 0.5}, {"power:0", HeuristicKind::kPower, 0},
-               {"power:1e3", HeuristicKind::kPower, 1000}};
+  } cases[] = {{"average", HeuristicKind::kAverage, 0},    {"balance", HeuristicKind::kBalance, 0},
+               {"power", HeuristicKind::kPower, 2},        {"power:3", HeuristicKind::kPower, 3},
+               {"power:0.5", HeuristicKind::kPower, 0.5},  {"power:0", HeuristicKind::kPower, 0},
+               {"power:1e3", HeuristicKind::kPower, 1000}, {"cutoff", HeuristicKind::kCutoff, 0.1},
+               {"cutoff:0", HeuristicKind::kCutoff, 0},    {"cutoff:0.5", HeuristicKind::kCutoff, 0.5},
+               {"cutoff:1", HeuristicKind::kCutoff, 1},    {"maximum", HeuristicKind::kMaximum, 0}};
   for (const auto& c : cases) {
     const Estimator estimator = parse_estimator(c.name, kScene);
     EXPECT_EQ(estimator.name, c.name);
@@ -64,6 +66,19 @@ TEST(ParseEstimator, CountsFollowTheCatalogueWhateverTheOrderInTheName) {
   EXPECT_EQ(estimator.allocation.layout(kScene).dims(), 11);
   EXPECT_EQ(parse_estimator("balance@bsdf+light*3", kScene).allocation, estimator.allocation);
   EXPECT_FALSE(parse_estimator("balance", kScene).allocation == estimator.allocation);
+}
+
+TEST(ParseEstimator, AnyTechniquesInAnyNumbers) {
+  const Estimator estimator = parse_estimator("cutoff:0.2@surface+light*2+cosine*5+hemisphere+bsdf", kLighting);
+  EXPECT_THAT(estimator.allocation.techniques, ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(estimator.allocation.counts, ElementsAre(2, 1, 1, 5, 1));
+  EXPECT_EQ(estimator.allocation.round(), 10);
+  EXPECT_THAT(estimator.allocation.layout(kLighting).groups, ElementsAre(1, 2, 1, 2, 2, 2, 2, 2, 2, 2, 2, 1, 2));
+  EXPECT_THAT(parse_estimator("balance", kLighting).allocation.techniques, ElementsAre(0, 1));
+  for (const char* name : {"hemisphere", "cosine", "surface"}) {
+    EXPECT_EQ(parse_estimator(name, kLighting).heuristic.kind, HeuristicKind::kSingle) << name;
+    EXPECT_EQ(parse_estimator(name, kLighting).allocation.round(), 1) << name;
+  }
 }
 
 TEST(ParseEstimator, ALoneTechniqueNeedsNoWeights) {
@@ -112,6 +127,14 @@ TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
                                           "': the power heuristic's exponent is a number that is at least 0, found '" +
                                           beta + "'");
   }
+  for (const char* alpha : {"", "-0.1", "1.001", "2", "x", "nan", "inf", "0,5", "0.5x"}) {
+    const std::string name = "cutoff:" + std::string(alpha);
+    EXPECT_EQ(error_of(name, kScene),
+              "estimator '" + name +
+                  "': the cutoff heuristic's threshold is a number that is at least 0 and at most 1, found '" + alpha +
+                  "'");
+  }
+  EXPECT_EQ(error_of("maximum:1", kScene), "estimator 'maximum:1': 'maximum' takes no parameter");
   EXPECT_EQ(error_of("balance:2", kScene), "estimator 'balance:2': 'balance' takes no parameter");
   EXPECT_EQ(error_of("average:", kScene), "estimator 'average:': 'average' takes no parameter");
   // A scene of one technique: the default pair is not there.

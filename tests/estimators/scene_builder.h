@@ -30,6 +30,13 @@ inline Primitive rectangle(const Vec3& center, const Vec3& half_u, const Vec3& h
   return primitive;
 }
 
+/// A disk, or an ellipse where the half axes differ, that neither reflects nor emits; its front as a rectangle's.
+inline Primitive disk(const Vec3& center, const Vec3& half_u, const Vec3& half_v) {
+  Primitive primitive = rectangle(center, half_u, half_v);
+  std::get<Flat>(primitive.shape).outline = Flat::Outline::kDisk;
+  return primitive;
+}
+
 inline Primitive emitting(Primitive primitive, const Rgb& radiance) {
   primitive.emits = true;
   primitive.radiance = radiance;
@@ -66,6 +73,15 @@ inline Bsdf conductor(double alpha, const Rgb& eta, const Rgb& k) {
   bsdf.unit_fresnel = false;
   bsdf.eta = eta;
   bsdf.k = k;
+  return bsdf;
+}
+
+inline Bsdf phong(const Rgb& diffuse, const Rgb& specular, double exponent) {
+  Bsdf bsdf;
+  bsdf.kind = BsdfKind::kPhong;
+  bsdf.reflectance = diffuse;
+  bsdf.specular = specular;
+  bsdf.exponent = exponent;
   return bsdf;
 }
 
