@@ -5,6 +5,7 @@
 // error is σ² √((κ − 1)/n), κ = m₄/σ⁴.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -30,18 +31,45 @@ Spread operator+(const Spread& a, const Spread& b) {
   return {a.mean + b.mean, a.m2 + b.m2, a.m4 + b.m4 + 6 * a.m2 * b.m2};
 }
 
-/// Of a quantity as a function of a uniform number.
-Spread spread_of(const std::function<double(double)>& of_u) {
+/// Of a quantity as a function of a uniform number; `jumps` are where it is not smooth, if they lie in (0, 1).
+Spread spread_of(const std::function<double(double)>& of_u, std::vector<double> jumps = {}) {
+  std::erase_if(jumps, [](double u) { return !(u > 0 && u < 1); });
+  jumps.insert(jumps.end(), {0, 1});
+  std::sort(jumps.begin(), jumps.end());
   Spread spread;
-  std::vector<double> values;
-  for (int i = 0; i < kGrid; ++i) values.push_back(of_u((i + 0.5) / kGrid));
-  for (const double v : values) spread.mean += v / kGrid;
-  for (const double v : values) {
+  const auto each = [&](const auto& add) {
+    for (std::size_t piece = 0; piece + 1 < jumps.size(); ++piece) {
+      const double step = (jumps[piece + 1] - jumps[piece]) / kGrid;
+      for (int i = 0; i < kGrid; ++i) add(of_u(jumps[piece] + (i + 0.5) * step), step);
+    }
+  };
+  each([&](double v, double step) { spread.mean += v * step; });
+  each([&](double v, double step) {
     const double d2 = (v - spread.mean) * (v - spread.mean);
-    spread.m2 += d2 / kGrid;
-    spread.m4 += d2 * d2 / kGrid;
-  }
+    spread.m2 += d2 * step;
+    spread.m4 += d2 * d2 * step;
+  });
   return spread;
+}
+
+/// A heuristic's weight of `light` beside `bsdf`, by its definition, as a function of r = p_bsdf/p_light.
+struct LightWeight {
+  std::function<double(double)> of_ratio;
+  std::vector<double> jumps;  ///< ratios where it jumps
+};
+
+LightWeight power_weight(double beta) {
+  return {[beta](double r) { return 1 / (1 + std::pow(r, beta)); }, {}};
+}
+LightWeight cutoff_weight(double alpha) {
+  const auto weight = [alpha](double r) {
+    const double largest = std::max(r, 1.0), light = 1 >= alpha * largest ? 1 : 0, bsdf = r >= alpha * largest ? r : 0;
+    return light / (light + bsdf);
+  };
+  return {weight, {alpha, 1 / alpha}};
+}
+LightWeight maximum_weight() {
+  return {[](double r) { return r <= 1 ? 1 : 0; }, {1}};
 }
 
 /// Estimates from one pair (or one sample) each.
@@ -75,28 +103,34 @@ void expect_variance(const IntegralSource& scene, const Published& published, co
 
 TEST(ExactVariance, ToyProblem) {
   const auto scene = make_analytic_scene("mis-toy");
-  // w_light(x) of p₁ = 1, p₂ = 2x with β, and f = x.
-  const auto combined = [](double beta) {
-    const auto light = [beta](double x) { return 1 / (1 + std::pow(2 * x, beta)); };
-    return spread_of([light](double u) { return light(u) * u; }) +
-           spread_of([light](double u) { return (1 - light(std::sqrt(u))) / 2; });
+  // p₁ = 1, p₂ = 2x and f = x.
+  const auto combined = [](const LightWeight& weight) {
+    std::vector<double> of_light, of_bsdf;  // u where 2x is a ratio of the weight's jumps, for x = u and x = √u
+    for (const double r : weight.jumps) of_light.push_back(r / 2), of_bsdf.push_back(r * r / 4);
+    return spread_of([&](double u) { return weight.of_ratio(2 * u) * u; }, of_light) +
+           spread_of([&](double u) { return (1 - weight.of_ratio(2 * std::sqrt(u))) / 2; }, of_bsdf);
   };
   expect_variance(*scene, {"light", 1.0 / 12}, spread_of([](double u) { return u; }));
   expect_variance(*scene, {"bsdf", 0}, {});
   expect_variance(*scene, {"average", 1.0 / 48}, spread_of([](double u) { return u / 2 + 0.25; }));
-  expect_variance(*scene, {"balance", 0.011110988148968387}, combined(1));
-  expect_variance(*scene, {"power:1", 0.011110988148968387}, combined(1));
-  expect_variance(*scene, {"power", 0.013250220050248314}, combined(2));
-  expect_variance(*scene, {"power:3", 0.020228413431753918}, combined(3));
-  expect_variance(*scene, {"power:4", 0.027833444461787576}, combined(4));
+  expect_variance(*scene, {"balance", 0.011110988148968387}, combined(power_weight(1)));
+  expect_variance(*scene, {"power:1", 0.011110988148968387}, combined(power_weight(1)));
+  expect_variance(*scene, {"power", 0.013250220050248314}, combined(power_weight(2)));
+  expect_variance(*scene, {"power:3", 0.020228413431753918}, combined(power_weight(3)));
+  expect_variance(*scene, {"power:4", 0.027833444461787576}, combined(power_weight(4)));
+  expect_variance(*scene, {"cutoff", 0.011121517198756346}, combined(cutoff_weight(0.1)));
+  expect_variance(*scene, {"cutoff:0.1", 0.011121517198756346}, combined(cutoff_weight(0.1)));
+  expect_variance(*scene, {"cutoff:0.5", 0.013146226126042774}, combined(cutoff_weight(0.5)));
+  expect_variance(*scene, {"cutoff:0.8", 0.052308892485402825}, combined(cutoff_weight(0.8)));
+  expect_variance(*scene, {"maximum", 7.0 / 96}, combined(maximum_weight()));
   // ln 3 / 8 − (1/2 − ln 3 / 4)² − (ln 3 / 4)²
   const double q = std::log(3.0) / 4;
-  EXPECT_NEAR(combined(1).m2, q / 2 - (0.5 - q) * (0.5 - q) - q * q, 1e-9);
+  EXPECT_NEAR(combined(power_weight(1)).m2, q / 2 - (0.5 - q) * (0.5 - q) - q * q, 1e-9);
 }
 
 struct Cap {
   const char* scene;
-  double n, alpha, light, bsdf, average, balance, power;
+  double n, alpha, light, bsdf, average, balance, power, cutoff1, cutoff5, cutoff8, maximum;
 };
 
 void PrintTo(const Cap& cap, std::ostream* out) { *out << cap.scene; }
@@ -112,60 +146,65 @@ TEST_P(AlignedPhongCap, HasItsExactVariances) {
   const double p_light = 1 / (2 * std::numbers::pi * v_max);
   const auto p_bsdf = [n](double v) { return (n + 1) / (2 * std::numbers::pi) * std::pow(1 - v, n); };
   // Without weights, the value of a light sample is p_bsdf/p_light, of a BSDF sample 1 in the cone.
-  const auto light_weight = [&](double v, double beta) { return 1 / (1 + std::pow(p_bsdf(v) / p_light, beta)); };
-  const auto v_of_bsdf = [n](double u) { return -std::expm1(std::log1p(-u) / (n + 1)); };
-  const auto combined = [&](double beta) {
-    const Spread light =
-        spread_of([&](double u) { return light_weight(u * v_max, beta) * p_bsdf(u * v_max) / p_light; });
-    // Only the part of [0, 1) that falls into the cone, whose measure is μ, is worth something.
-    const double mu = -std::expm1((n + 1) * std::log1p(-v_max));
-    double first = 0;
-    std::vector<double> values;
-    for (int i = 0; i < kGrid; ++i) {
-      const double v = v_of_bsdf(mu * (i + 0.5) / kGrid);
-      values.push_back(1 - light_weight(v, beta));
-      first += mu * values.back() / kGrid;
+  const double mu = -std::expm1((n + 1) * std::log1p(-v_max));  // the part of the BSDF's samples that meets the cone
+  const auto combined = [&](const LightWeight& weight) {
+    const auto light_weight = [&](double v) { return weight.of_ratio(p_bsdf(v) / p_light); };
+    std::vector<double> of_light, of_bsdf = {mu};
+    for (const double r : weight.jumps) {  // at v
+      const double v = -std::expm1(std::log(r * p_light * 2 * std::numbers::pi / (n + 1)) / n);
+      of_light.push_back(v / v_max);
+      if (v < v_max) of_bsdf.push_back(-std::expm1((n + 1) * std::log1p(-v)));
     }
-    Spread bsdf = {first, (1 - mu) * std::pow(first, 2), (1 - mu) * std::pow(first, 4)};
-    for (const double value : values) {
-      bsdf.m2 += mu * std::pow(value - first, 2) / kGrid;
-      bsdf.m4 += mu * std::pow(value - first, 4) / kGrid;
-    }
-    return light + bsdf;
+    const auto light = [&](double u) { return light_weight(u * v_max) * p_bsdf(u * v_max) / p_light; };
+    const auto bsdf = [&](double u) { return u < mu ? 1 - light_weight(-std::expm1(std::log1p(-u) / (n + 1))) : 0.0; };
+    return spread_of(light, of_light) + spread_of(bsdf, of_bsdf);
   };
-  const double q = -std::expm1((n + 1) * std::log1p(-v_max));
-  const Spread bernoulli = {q, q * (1 - q), q * (1 - q) * (1 - 3 * q * (1 - q))};
+  const Spread bernoulli = {mu, mu * (1 - mu), mu * (1 - mu) * (1 - 3 * mu * (1 - mu))};
   const Spread light = spread_of([&](double u) { return p_bsdf(u * v_max) / p_light; });
   expect_variance(*scene, {"light", cap.light}, light);
   expect_variance(*scene, {"bsdf", cap.bsdf}, bernoulli);
   const Spread sum = light + bernoulli;
   expect_variance(*scene, {"average", cap.average}, {sum.mean / 2, sum.m2 / 4, sum.m4 / 16});
-  expect_variance(*scene, {"balance", cap.balance}, combined(1));
-  expect_variance(*scene, {"power", cap.power}, combined(2));
+  expect_variance(*scene, {"balance", cap.balance}, combined(power_weight(1)));
+  expect_variance(*scene, {"power", cap.power}, combined(power_weight(2)));
+  expect_variance(*scene, {"cutoff:0.1", cap.cutoff1}, combined(cutoff_weight(0.1)));
+  expect_variance(*scene, {"cutoff:0.5", cap.cutoff5}, combined(cutoff_weight(0.5)));
+  expect_variance(*scene, {"cutoff:0.8", cap.cutoff8}, combined(cutoff_weight(0.8)));
+  expect_variance(*scene, {"maximum", cap.maximum}, combined(maximum_weight()));
 }
 
 INSTANTIATE_TEST_SUITE_P(
     NAndAlpha, AlignedPhongCap,
     testing::Values(Cap{"aligned-phong-cap:n=10,alpha=0.05", 10, 0.05, 2.432200069450513e-09, 0.013474917125694241,
-                        0.0033687298894735777, 2.449997212925192e-06, 2.8987465303088264e-09},
+                        0.0033687298894735777, 2.449997212925192e-06, 2.8987465303088264e-09, 2.432200069450513e-09,
+                        2.432200069450513e-09, 2.432200069450513e-09, 2.432200069450513e-09},
                     Cap{"aligned-phong-cap:n=1,alpha=0.2", 1, 0.2, 5.2626707917433225e-08, 0.03791166133160433,
-                        0.00947792848957806, 5.471065213688093e-05, 1.4388930249531274e-07},
+                        0.00947792848957806, 5.471065213688093e-05, 1.4388930249531274e-07, 5.2626707917433225e-08,
+                        5.2626707917433225e-08, 5.2626707917433225e-08, 5.2626707917433225e-08},
                     Cap{"aligned-phong-cap:n=10000,alpha=0.01", 10000, 0.01, 0.0032126942860631756, 0.23865875551893376,
-                        0.06046786245124924, 0.020615636319222422, 0.006386093641269864},
+                        0.06046786245124924, 0.020615636319222422, 0.006386093641269864, 0.020615636319222422,
+                        0.003221461715283858, 0.0032126942860631756, 0.0032126942860631756},
                     Cap{"aligned-phong-cap:n=100,alpha=0.01", 100, 0.01, 5.286618602175076e-11, 0.005011978997817704,
-                        0.0012529947626709723, 1.2595956331612667e-07, 5.608519103978012e-11},
+                        0.0012529947626709723, 1.2595956331612667e-07, 5.608519103978012e-11, 5.286618602175076e-11,
+                        5.286618602175076e-11, 5.286618602175076e-11, 5.286618602175076e-11},
                     Cap{"aligned-phong-cap:n=10,alpha=0.01", 10, 0.01, 6.2990381283560985e-15, 0.0005495555958422792,
-                        0.00013738889896214456, 1.6597842493415332e-10, 6.349262517832386e-15},
+                        0.00013738889896214456, 1.6597842493415332e-10, 6.349262517832386e-15, 6.2990381283560985e-15,
+                        6.2990381283560985e-15, 6.2990381283560985e-15, 6.2990381283560985e-15},
                     Cap{"aligned-phong-cap:n=1000,alpha=0.8", 1000, 0.8, 150.87415318712192, 0, 37.71853829678048,
-                        0.01809049328521886, 0.004158578612201627},
+                        0.01809049328521886, 0.004158578612201627, 0.007772941677858861, 0.004287700901583644,
+                        0.004376874944801758, 0.0048919738343417086},
                     Cap{"aligned-phong-cap:n=10000,alpha=0.8", 10000, 0.8, 1515.6939270231392, 0, 378.9234817557848,
-                        0.0026284731899244556, 0.00042291265907067207},
+                        0.0026284731899244556, 0.00042291265907067207, 0.0007919675082120872, 0.0004339230833248504,
+                        0.0004422311368571039, 0.000493916216484684},
                     Cap{"aligned-phong-cap:n=100,alpha=0.8", 100, 0.8, 14.392511731092368, 1.4062070720451987e-16,
-                        3.598127932773092, 0.08661737120830017, 0.035895228585606405},
+                        3.598127932773092, 0.08661737120830017, 0.035895228585606405, 0.06528121109070967,
+                        0.0388499081737648, 0.040328610419249185, 0.04540814037008391},
                     Cap{"aligned-phong-cap:n=10,alpha=0.2", 10, 0.2, 0.00013319842862834685, 0.15920026579312924,
-                        0.0398333660554394, 0.004471128435898644, 0.00034253916867763197},
+                        0.0398333660554394, 0.004471128435898644, 0.00034253916867763197, 0.004471128435898644,
+                        0.00013319842862834685, 0.00013319842862834685, 0.00013319842862834685},
                     Cap{"aligned-phong-cap:n=10000,alpha=0.2", 10000, 0.2, 98.68206110956625, 0, 24.670515277391562,
-                        0.02516798192969775, 0.006321313862650276}));
+                        0.02516798192969775, 0.006321313862650276, 0.011782112287104043, 0.006537205498049859,
+                        0.006681350145779071, 0.007470168631489288}));
 
 }  // namespace
 }  // namespace halfslope
