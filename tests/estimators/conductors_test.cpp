@@ -172,8 +172,7 @@ Rgb integrated(const Scene& scene, const Sphere& light) {
     for (int j = 0; j < kAzimuths; ++j) {
       const double phi = 2 * kPi * (j + 0.5) / kAzimuths;
       const Vec3 wi = cos_alpha * axis + sin_alpha * (std::cos(phi) * u + std::sin(phi) * v);
-      const ExpectedTerm term = tracer.bsdf_sample(wi);
-      sum += term.value * (term.pdf_bsdf * kRule.w[i] * cap_height * kPi / kAzimuths);
+      sum += tracer.direction_sample(wi).value * (kRule.w[i] * cap_height * kPi / kAzimuths);
     }
   }
   return sum;
@@ -191,7 +190,7 @@ TEST(Conductors, FresnelInEveryChannel) {
       const Scene scene = scene_of({floor, light}, {looking(eye, Vec3::Zero())});
       const Rgb exact = integrated(scene, ball);
       const DirectLighting source = lighting(scene);
-      for (const std::string estimator : {"light", "bsdf", "balance", "power"}) {
+      for (const std::string estimator : {"light", "bsdf", "balance", "power", "hemisphere", "cosine"}) {
         const Request request = {.estimator = estimator, .sampler = "halton-owen", .rounds = 4096, .seed = 8};
         const auto f64 = estimate<double>(source, 0, request), f32 = estimate<float>(source, 0, request);
         for (int c = 0; c < 3; ++c) {
@@ -211,7 +210,7 @@ TEST(Conductors, UnderADomeReflectTheirAlbedo) {
   for (const double c : {0.1, 0.5, 0.95}) {
     const Scene scene = scene_of({floor, dome}, {looking({0, 0.1 * std::sqrt(1 - c * c), 0.1 * c}, Vec3::Zero())});
     const DirectLighting source = lighting(scene);
-    for (const std::string estimator : {"light", "bsdf", "balance"}) {
+    for (const std::string estimator : {"light", "bsdf", "balance", "hemisphere", "cosine", "surface"}) {
       const Request request = {.estimator = estimator, .sampler = "halton-owen", .rounds = 4096, .seed = 8};
       const double exact = 2 * (1 - c * std::log((1 + c) / c));
       expect_mean(estimate<double>(source, 0, request)[0], exact, 1e-11, estimator);

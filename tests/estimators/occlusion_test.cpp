@@ -1,10 +1,11 @@
 // Each sample of the kernels against a reference that knows no shortcut: over random scenes, whether the sample is
-// worth anything, what it is worth, and both densities of its direction.
+// worth anything, what it is worth, and all five densities of its direction.
 #include "estimators/occlusion.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -37,22 +38,44 @@ double seen_as(const PointBlock& points, int dim, int sample, int lane) {
   return std::is_same_v<T, float> ? std::floor(u * 0x1p24) * 0x1p-24 : u;
 }
 
-/// The world direction of a BSDF sample: the cosine-weighted disc or a mirrored visible normal, about the local axes of
-/// Duff and others, "Building an orthonormal basis, revisited" (2017).
-Vec3 bsdf_direction(const ReferenceTracer& tracer, double u1, double u2) {
-  const Vec3 n = tracer.normal();
+constexpr const char* kTechniques[] = {"light", "bsdf", "hemisphere", "cosine", "surface"};
+
+/// A local direction by height and azimuth.
+Vec<double> around(double z, double u) {
+  const double ring = std::sqrt(std::max(0.0, 1 - z * z)), azimuth = 2 * std::numbers::pi * u;
+  return {ring * std::cos(azimuth), ring * std::sin(azimuth), z};
+}
+
+/// The axes of Duff and others, "Building an orthonormal basis, revisited" (2017).
+std::array<Vec3, 3> frame_about(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
-  const Vec3 x_axis(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), y_axis(b, sign + n.y() * n.y() * a, -n.y());
-  Vec<double> local;
-  if (tracer.bsdf().kind == BsdfKind::kDiffuse) {
-    const double azimuth = 2 * std::numbers::pi * u2;
-    local = {std::sqrt(u1) * std::cos(azimuth), std::sqrt(u1) * std::sin(azimuth), std::sqrt(1 - u1)};
-  } else {
-    const Vec<double> wo = {x_axis.dot(tracer.to_eye()), y_axis.dot(tracer.to_eye()), n.dot(tracer.to_eye())};
-    const Vec<double> h = sample_ggx_visible_normal(tracer.bsdf().alpha, wo, u1, u2);
-    local = 2 * dot(wo, h) * h - wo;
+  return {Vec3(1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()), Vec3(b, sign + n.y() * n.y() * a, -n.y()), n};
+}
+
+/// The local direction of a sample of `bsdf`: by the cosine, a mirrored visible normal, or about the mirror direction.
+Vec<double> bsdf_direction(const Bsdf& bsdf, double share, const Vec<double>& wo, double u1, double u2) {
+  if (bsdf.kind == BsdfKind::kRoughConductor) {
+    const Vec<double> h = sample_ggx_visible_normal(bsdf.alpha, wo, u1, u2);
+    return 2 * dot(wo, h) * h - wo;
   }
-  return local.x * x_axis + local.y * y_axis + local.z * n;
+  if (bsdf.kind == BsdfKind::kDiffuse || u2 >= share) {
+    return around(std::sqrt(1 - u1), bsdf.kind == BsdfKind::kDiffuse ? u2 : (u2 - share) / (1 - share));
+  }
+  const Vec<double> lobe = around(std::pow(1 - u1, 1 / (bsdf.exponent + 1)), u2 / share);
+  const auto [x, y, z] = frame_about({-wo.x, -wo.y, wo.z});
+  const Vec3 wi = lobe.x * x + lobe.y * y + lobe.z * z;
+  return {wi.x(), wi.y(), wi.z()};
+}
+
+/// The world direction of a sample of `bsdf` (1), `hemisphere` (2) or `cosine` (3).
+Vec3 direction(const ReferenceTracer& tracer, int technique, double u1, double u2) {
+  const auto [x, y, z] = frame_about(tracer.normal());
+  const Vec<double> wo = {x.dot(tracer.to_eye()), y.dot(tracer.to_eye()), z.dot(tracer.to_eye())};
+  const bool is_phong = tracer.bsdf().kind == BsdfKind::kPhong;
+  const Vec<double> local = technique == 1
+                                ? bsdf_direction(tracer.bsdf(), is_phong ? tracer.specular_share() : 0, wo, u1, u2)
+                                : around(technique == 2 ? 1 - u1 : std::sqrt(1 - u1), u2);
+  return local.x * x + local.y * y + local.z * z;
 }
 
 struct Tally {
@@ -70,7 +93,7 @@ bool stands_between(const Primitive& primitive, const Vec3& from, const Vec3& to
 /// The promises of light_reaches and can_occlude, for a light sample whose cosines are both positive.
 void check_promises(const Scene& scene, const Receiver& receiver, const ExpectedTerm& term, Tally& tally) {
   const Primitive& light = scene.primitives[static_cast<std::size_t>(term.light)];
-  const bool contributes = term.pdf_light > 0, own = term.light == receiver.primitive;
+  const bool contributes = term.densities[0] > 0, own = term.light == receiver.primitive;
   ASSERT_TRUE(!contributes || light_reaches(receiver, light, own));
   if (contributes && own) ++tally.lit_by_own_inside;
   for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
@@ -97,38 +120,50 @@ void check_receiver(const Scene& scene, const DirectLighting& source, int pixel,
   points.reset(layout.dims(), kSamples, true);
   sampler->fill(0, points);
   TermBlock<T> terms;
-  terms.reset(1, source.channels(), 2, kSamples);
-  const std::vector<int> both = {0, 1};
+  terms.reset(1, source.channels(), 5, kSamples);
+  const std::vector<int> all = {0, 1, 2, 3, 4};
   const PixelIntegral integral = source.pixel(pixel);
   if (integral.integral) {
-    integral.integral->sample({technique, 0, 0, both}, points, terms);
+    integral.integral->sample({technique, 0, 0, all}, points, terms);
   } else {  // no light reaches it: the tracer must say so of every sample
-    std::fill_n(terms.value(0, 0), static_cast<std::size_t>(source.channels() + 2) * terms.stride(), T(0));
+    std::fill_n(terms.value(0, 0), static_cast<std::size_t>(source.channels() + 5) * terms.stride(), T(0));
   }
 
   for (int s = 0; s < kSamples; ++s) {
     for (int l = 0; l < kLanes; ++l) {
       const int pair = layout.dims() - 2;
       const double u1 = seen_as<T>(points, pair, s, l), u2 = seen_as<T>(points, pair + 1, s, l);
-      const ExpectedTerm expected = technique == 0
-                                        ? tracer.light_sample(pair == 1 ? points.coordinate(0, s, l) : 0, u1, u2)
-                                        : tracer.bsdf_sample(bsdf_direction(tracer, u1, u2));
+      const double choice = pair == 1 ? points.high(0)[static_cast<std::size_t>(s * kLanes + l)] * 0x1p-32 : 0;
+      ExpectedTerm expected = technique == 0   ? tracer.light_sample(choice, u1, u2)
+                              : technique == 4 ? tracer.surface_sample(choice, u1, u2)
+                                               : tracer.direction_sample(direction(tracer, technique, u1, u2));
+      // Which part of a Phong BSDF a number chooses is a matter of rounding beside the border, and where it is
+      // stretched.
+      if (technique == 1 && tracer.bsdf().kind == BsdfKind::kPhong) {
+        expected.grazing = expected.grazing || std::abs(u2 - tracer.specular_share()) < Closeness<T>::kNudge;
+      }
       ++(expected.grazing ? tally.grazing : tally.compared);
       if (expected.grazing) continue;
       const std::size_t i = static_cast<std::size_t>(s * kLanes + l);
-      const std::string what = "pixel " + std::to_string(pixel) + (technique == 0 ? " light" : " bsdf") + " sample " +
+      const std::string what = "pixel " + std::to_string(pixel) + ' ' + kTechniques[technique] + " sample " +
                                std::to_string(i) + ", receiver on " + std::to_string(seen.primitive);
-      const auto close = [&](double found, double exact) {
-        ASSERT_LE(std::fabs(found - exact), Closeness<T>::kRelative * exact)
+      const bool worth = expected.densities[0] > 0;
+      const double surface_rounding = worth ? tracer.choice_rounding(expected.light) : 0;
+      const auto close = [&](double found, double exact, double more = 0) {
+        ASSERT_LE(std::fabs(found - exact), (Closeness<T>::kRelative + more) * exact)
             << what << ": " << found << " is not " << exact;
       };
-      for (int c = 0; c < source.channels(); ++c) close(terms.value(0, c)[i], expected.value[c]);
-      if (expected.pdf_light > 0) {  // a sample that is worth nothing may have any densities
-        ++tally.lit;
-        close(terms.pdf(0, 0)[i], expected.pdf_light);
-        close(terms.pdf(0, 1)[i], expected.pdf_bsdf);
+      for (int c = 0; c < source.channels(); ++c) {
+        const double exact = worth ? expected.value[c] / expected.densities[static_cast<std::size_t>(technique)] : 0;
+        close(terms.value(0, c)[i], exact, technique == 4 ? surface_rounding : 0);
       }
-      if (technique == 0 && expected.faces && !Closeness<T>::kSingle) {
+      if (worth) {  // a sample that is worth nothing may have any densities
+        ++tally.lit;
+        for (int t = 0; t < 5; ++t) {
+          close(terms.pdf(0, t)[i], expected.densities[static_cast<std::size_t>(t)], t == 4 ? surface_rounding : 0);
+        }
+      }
+      if ((technique == 0 || technique == 4) && expected.faces && !Closeness<T>::kSingle) {
         check_promises(scene, {seen.position, seen.normal, seen.primitive}, expected, tally);
       }
       if (::testing::Test::HasFatalFailure()) return;
@@ -146,7 +181,7 @@ Tally check_random_scenes(std::uint64_t seed, int scenes, int rays) {
     if (scene.sensor.rays.empty()) continue;
     const DirectLighting source = lighting(scene);
     for (int pixel = 0; pixel < source.pixels(); ++pixel) {
-      for (const int technique : {0, 1}) {
+      for (const int technique : {0, 1, 2, 3, 4}) {
         check_receiver<T>(scene, source, pixel, technique, tally);
         if (::testing::Test::HasFatalFailure()) return tally;
       }

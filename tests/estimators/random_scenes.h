@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <random>
+#include <variant>
 #include <vector>
 
 #include "tests/estimators/scene_builder.h"
@@ -27,9 +28,9 @@ class RandomScenes {
     }
   }
 
-  /// Spheres and rectangles of all sizes in a box, inside each other and through each other; spheres that show their
-  /// inside, sometimes one around everything; about half of them emit, the first always. `rays` that meet the front of
-  /// something that reflects.
+  /// Spheres, rectangles and ellipses of all sizes in a box, inside each other and through each other; spheres that
+  /// show their inside, sometimes one around everything; about half of them emit, the first always. `rays` that meet
+  /// the front of something that reflects.
   Scene scene(int rays, double least_alpha) {
     std::vector<Primitive> primitives;
     const int count = 3 + static_cast<int>(uniform(0, 7));
@@ -40,6 +41,7 @@ class RandomScenes {
       } else {
         const Vec3 u = direction(), v = u.cross(direction()).normalized();
         shape = rectangle(in_box(2), std::pow(10, uniform(-1, 0.5)) * u, std::pow(10, uniform(-1, 0.5)) * v);
+        if (uniform() < 0.5) std::get<Flat>(shape.shape).outline = Flat::Outline::kDisk;
       }
       primitives.push_back(finish(shape, least_alpha));
     }
@@ -50,7 +52,7 @@ class RandomScenes {
       const Ray ray = looking(in_box(3), in_box(2));
       const Hit hit = first_hit(scene, ray);
       if (hit.primitive < 0 || !hit.front || ray.direction.dot(hit.normal) > -0.05) continue;
-      if ((scene.primitives[static_cast<std::size_t>(hit.primitive)].bsdf.reflectance == 0).all()) continue;
+      if (is_black(scene.primitives[static_cast<std::size_t>(hit.primitive)].bsdf)) continue;
       scene.sensor.rays.push_back(ray);
     }
     return scene;
@@ -65,7 +67,10 @@ class RandomScenes {
   Primitive finish(Primitive shape, double least_alpha) {
     if (uniform() < 0.45) shape = emitting(shape, colour(0.5, 2));
     const double kind = uniform();
-    if (kind < 0.4) return made_of(shape, diffuse(colour(0.1, 0.9)));
+    if (kind < 0.2) return made_of(shape, diffuse(colour(0.1, 0.9)));
+    // The rougher the conductors, the wider the lobes: α = 0.1 with n ≤ 20, α = 0.03 with n ≤ 222.
+    const double exponent = std::pow(0.2 / (least_alpha * least_alpha), uniform()) - 1;
+    if (kind < 0.4) return made_of(shape, phong(colour(0.1, 0.5), colour(0, 0.5), exponent));
     const double alpha = least_alpha * std::pow(1 / least_alpha, uniform());
     if (kind < 0.6) return made_of(shape, conductor(alpha));
     if (kind < 0.85) return made_of(shape, conductor(alpha, colour(0.1, 2), colour(0.1, 5)));

@@ -16,13 +16,13 @@
 
 namespace halfslope {
 
-/// f/p and both densities in solid angle; all 0 where the sample is worth nothing.
+/// f and every technique's density in solid angle; all 0 where the sample is worth nothing.
 struct ExpectedTerm {
-  Rgb value = Rgb::Zero();
-  double pdf_light = 0, pdf_bsdf = 0;
+  Rgb value = Rgb::Zero();               ///< f_r cos θ L_e
+  std::array<double, 5> densities = {};  ///< of light, bsdf, hemisphere, cosine and surface
   /// A nudge of `tolerance` changes what is seen: rounding may decide either way.
   bool grazing = false;
-  // For a light sample: which light, and where.
+  // For a sample of `light` or `surface`: which light (−1: a surface that is none), and where.
   int light = -1;
   Vec3 point = Vec3::Zero();
   bool faces = false;  ///< both cosines are positive, whatever is between
@@ -41,13 +41,35 @@ class ReferenceTracer {
     bsdf_ = scene.primitives[static_cast<std::size_t>(seen.primitive)].bsdf;
     for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
       if (scene.primitives[i].emits) lights_.push_back(static_cast<int>(i));
+      total_area_ += area(scene.primitives[i]);
     }
   }
 
-  /// A light chosen by `choice` in [0, 1), a point uniform on its area: on a sphere at height 1 − 2u₁ and azimuth 2πu₂.
+  /// A light chosen by `choice` in [0, 1), each as likely, and a point on it.
   ExpectedTerm light_sample(double choice, double u1, double u2) {
+    return point_sample(lights_[static_cast<std::size_t>(choice * static_cast<double>(lights_.size()))], u1, u2);
+  }
+
+  /// A surface chosen by its share of all area, lights first, in order; and a point on it.
+  ExpectedTerm surface_sample(double choice, double u1, double u2) {
+    double end = 0;
+    for (const int light : lights_) {
+      end += area(scene_.primitives[static_cast<std::size_t>(light)]) / total_area_;
+      if (std::abs(choice - end) < 1e-8) {  // the kernels' shares are rounded
+        ExpectedTerm term;
+        term.grazing = true;
+        return term;
+      }
+      if (choice < end) return point_sample(light, u1, u2);
+    }
+    return {};
+  }
+
+  /// A point uniform on a light's area: on a sphere at height 1 − 2u₁ and azimuth 2πu₂, on a disk at radius √u₁ and
+  /// that azimuth.
+  ExpectedTerm point_sample(int chosen, double u1, double u2) {
     ExpectedTerm term;
-    term.light = lights_[static_cast<std::size_t>(choice * static_cast<double>(lights_.size()))];
+    term.light = chosen;
     const Primitive& light = scene_.primitives[static_cast<std::size_t>(term.light)];
     Vec3 normal;
     if (const auto* s = std::get_if<Sphere>(&light.shape)) {
@@ -58,7 +80,10 @@ class ReferenceTracer {
     } else {
       const auto& r = std::get<Flat>(light.shape);
       if (term.light == receiver_) return term;  // lies in its own plane
-      term.point = r.center + (2 * u1 - 1) * r.half_u + (2 * u2 - 1) * r.half_v;
+      const double azimuth = 2 * std::numbers::pi * u2;
+      term.point = r.outline == Flat::Outline::kDisk
+                       ? Vec3(r.center + std::sqrt(u1) * (std::cos(azimuth) * r.half_u + std::sin(azimuth) * r.half_v))
+                       : Vec3(r.center + (2 * u1 - 1) * r.half_u + (2 * u2 - 1) * r.half_v);
       normal = r.normal;
     }
     const Vec3 wi = (term.point - x_).normalized();
@@ -78,12 +103,11 @@ class ReferenceTracer {
     }
     if (!seen) return term;
     fill(term, light, wi, (term.point - x_).squaredNorm(), cos_psi);
-    term.value *= 1 / term.pdf_light;
     return term;
   }
 
-  /// The direction of a BSDF sample, given in the world.
-  ExpectedTerm bsdf_sample(const Vec3& wi) {
+  /// Whatever lies in a direction, given in the world.
+  ExpectedTerm direction_sample(const Vec3& wi) {
     ExpectedTerm term;
     term.grazing = std::abs(n_.dot(wi)) < 100 * tolerance_;
     if (n_.dot(wi) <= 0 || term.grazing) return term;
@@ -102,8 +126,8 @@ class ReferenceTracer {
     if (hit.primitive < 0) return term;
     const double distance = hit.distance + tolerance_, cos_psi = -hit.normal.dot(wi);
     term.grazing = term.grazing || cos_psi < 100 * tolerance_ || distance < 1e3 * tolerance_;
+    term.light = hit.primitive;
     fill(term, scene_.primitives[static_cast<std::size_t>(hit.primitive)], wi, distance * distance, cos_psi);
-    term.value *= 1 / term.pdf_bsdf;
     return term;
   }
 
@@ -111,7 +135,16 @@ class ReferenceTracer {
   const Vec3& normal() const { return n_; }
   const Vec3& to_eye() const { return wo_; }
   const Bsdf& bsdf() const { return bsdf_; }
-  std::size_t light_count() const { return lights_.size(); }
+  /// The specular part's share of the albedos' Rec. 709 luminances.
+  double specular_share() const {
+    const auto luminance = [](const Rgb& c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
+    return luminance(bsdf_.specular) / (luminance(bsdf_.specular) + luminance(bsdf_.reflectance));
+  }
+  /// How far surface choices, which come in steps of 2⁻³², may be from a light's share of the area, relative to it.
+  double choice_rounding(int light) const {
+    const double share = area(scene_.primitives[static_cast<std::size_t>(light)]) / total_area_;
+    return static_cast<double>(lights_.size()) * 0x1p-32 / share;
+  }
 
  private:
   Vec3 nudge() {
@@ -123,15 +156,29 @@ class ReferenceTracer {
   static double area(const Primitive& primitive) {
     if (const auto* s = std::get_if<Sphere>(&primitive.shape)) return 4 * std::numbers::pi * s->radius * s->radius;
     const auto& r = std::get<Flat>(primitive.shape);
-    return (2 * r.half_u).cross(2 * r.half_v).norm();
+    const double parallelogram = r.half_u.cross(r.half_v).norm();
+    return (r.outline == Flat::Outline::kDisk ? std::numbers::pi : 4) * parallelogram;
   }
 
   /// value: f_r cos θ L_e.
   void fill(ExpectedTerm& term, const Primitive& light, const Vec3& wi, double distance_squared, double cos_psi) const {
-    term.pdf_light = distance_squared / (cos_psi * area(light) * static_cast<double>(lights_.size()));
+    auto& [pdf_light, pdf_bsdf, pdf_hemisphere, pdf_cosine, pdf_surface] = term.densities;
     const double cos_i = n_.dot(wi);
+    pdf_light = distance_squared / (cos_psi * area(light) * static_cast<double>(lights_.size()));
+    pdf_surface = distance_squared / (cos_psi * total_area_);
+    pdf_hemisphere = 0.5 / std::numbers::pi;
+    pdf_cosine = cos_i / std::numbers::pi;
+    if (bsdf_.kind == BsdfKind::kPhong) {
+      const double lobe = std::pow(std::max(0.0, (2 * n_.dot(wo_) * n_ - wo_).dot(wi)), bsdf_.exponent);
+      const double share = specular_share(), n = bsdf_.exponent;
+      pdf_bsdf = share * (n + 1) / (2 * std::numbers::pi) * lobe + (1 - share) * pdf_cosine;
+      const Rgb brdf =
+          bsdf_.reflectance / std::numbers::pi + bsdf_.specular * ((n + 2) / (2 * std::numbers::pi) * lobe);
+      term.value = brdf * light.radiance * cos_i;
+      return;
+    }
     if (bsdf_.kind == BsdfKind::kDiffuse) {
-      term.pdf_bsdf = cos_i / std::numbers::pi;
+      pdf_bsdf = pdf_cosine;
       term.value = bsdf_.reflectance * light.radiance * (cos_i / std::numbers::pi);
       return;
     }
@@ -140,7 +187,7 @@ class ReferenceTracer {
     const double tan2_h = n_.cross(h).squaredNorm() / std::pow(n_.dot(h), 2);
     const double d = 1 / (std::numbers::pi * a2 * std::pow(n_.dot(h), 4) * std::pow(1 + tan2_h / a2, 2));
     const auto lambda = [&](double c) { return (std::sqrt(1 + a2 * (1 / (c * c) - 1)) - 1) / 2; };
-    term.pdf_bsdf = d / (1 + lambda(cos_o)) / (4 * cos_o);
+    pdf_bsdf = d / (1 + lambda(cos_o)) / (4 * cos_o);
     const double specular = d / (1 + lambda(cos_i) + lambda(cos_o)) / (4 * cos_o);
     for (int c = 0; c < 3; ++c) {
       const double f = bsdf_.unit_fresnel ? 1 : fresnel(wi.dot(h), {bsdf_.eta[c], bsdf_.k[c]});
@@ -161,6 +208,7 @@ class ReferenceTracer {
   double tolerance_;
   Bsdf bsdf_;
   std::vector<int> lights_;
+  double total_area_ = 0;
   std::mt19937_64 random_{12345};
 };
 
