@@ -10,6 +10,7 @@
 
 #include "scenes/closed_form.h"
 #include "tests/estimators/expect_radiance.h"
+#include "tests/estimators/random_scenes.h"
 
 namespace halfslope {
 namespace {
@@ -121,6 +122,24 @@ TEST(ClosedForms, TiltedEllipsesBesideARectangleInColour) {
   const Scene scene = floor_under({first, second, third}, diffuse(albedo));
   expect_radiance(scene, exact, "ellipses", 2048);
   expect_radiance(moved(scene, some_turn(), 30, {-4, 0, 7}), exact, "ellipses moved", 2048);
+}
+
+TEST(ClosedForms, RandomLights) {
+  RandomScenes random(77);
+  int tested = 0;
+  while (tested < 24) {
+    const Vec3 u = random.direction(), v = u.cross(random.direction()).normalized(), center = random.in_box(1.5);
+    const double a = std::pow(10, random.uniform(-0.7, 0.3)), b = std::pow(10, random.uniform(-0.7, 0.3));
+    Primitive light = rectangle(center, a * u, b * v);
+    if (tested % 3 == 1) light = disk(center, a * u, b * v);
+    if (tested % 3 == 2) light = sphere(center, a);
+    light = emitting(light, grey(2));
+    const Scene scene = floor_under({light}, diffuse(grey(0.5)));
+    const auto exact = lighting(scene).closed_form(0);
+    // What is seen at all, and of which 1000 samples meet enough.
+    if (first_hit(scene, scene.sensor.rays[0]).primitive != 0 || !exact || (*exact)[0] < 0.01) continue;
+    expect_radiance(scene, grey((*exact)[0]), "random light " + std::to_string(tested++));
+  }
 }
 
 TEST(ClosedForms, TwoLightsAddInEveryChannel) {

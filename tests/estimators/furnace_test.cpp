@@ -85,6 +85,29 @@ TEST(Furnace, EveryEstimatorAtEveryPixel) {
   }
 }
 
+TEST(Furnace, DensitiesThatTieEverywhereAreWithoutBias) {
+  // About the middle of a dome, `light` has half the density of `hemisphere` in every direction; and on the inside of a
+  // sphere that of `cosine`. Which is the larger, or above a cutoff, is then rounding's word at every single sample.
+  const Primitive dome = emitting(sphere(Vec3::Zero(), 0.7, true), grey(kRadiance));
+  const Scene middle = moved(floor_under({dome}, diffuse(grey(0.5))), some_turn(), 1.3, {0.1, 0.2, 0.3});
+  const Scene wall = scene_of({made_of(dome, diffuse(grey(0.5)))}, {{Vec3(0.1, 0.2, 0.3), Vec3(1, 2, 3).normalized()}});
+  const auto expect_unbiased = [](const Scene& scene, const std::string& estimator) {
+    const Request request = {.estimator = estimator, .sampler = "halton-owen", .rounds = 2048};
+    const DirectLighting source = lighting(scene);
+    expect_mean(estimate<double>(source, 0, request)[0], 0.5 * kRadiance, 1e-11, estimator);
+    expect_mean(estimate<float>(source, 0, request)[0], 0.5 * kRadiance, 4e-6, estimator + " f32");
+  };
+  for (const std::string estimator : {"maximum@light*2+hemisphere", "cutoff:0.5@light+hemisphere",
+                                      "cutoff:1@light*2+hemisphere", "cutoff:0.25@light+hemisphere*2"}) {
+    expect_unbiased(middle, estimator);
+  }
+  for (const std::string estimator :
+       {"maximum", "maximum@light+cosine", "maximum@cosine+surface", "cutoff:0.5@light+cosine*2", "cutoff:1"}) {
+    expect_unbiased(wall, estimator);
+    expect_unbiased(moved(wall, some_turn(), 3, {5, -4, 3}), estimator);
+  }
+}
+
 /// A box that shines inwards from all of its six walls, and reflects.
 Scene box(double albedo, std::vector<Ray> rays) {
   const Vec3 half(1.5, 1, 0.8);
