@@ -60,10 +60,13 @@ void register_all() {
   }
   for (const Isa isa : supported_isas()) {
     const std::string name = to_string(isa);
+    benchmark::RegisterBenchmark(("three/f32/independent/" + name).c_str(), [=](benchmark::State& state) {
+      lighting_pairs<float>(state, name, "independent", "light+bsdf+cosine");
+    });
     benchmark::RegisterBenchmark(("pairs/f64/independent/" + name).c_str(), [=](benchmark::State& state) {
       lighting_pairs<double>(state, name, "independent", "light+bsdf");
     });
-    for (const std::string technique : {"light", "bsdf"}) {
+    for (const std::string technique : {"light", "bsdf", "hemisphere", "cosine", "surface"}) {
       benchmark::RegisterBenchmark((technique + "/f32/independent/" + name).c_str(), [=](benchmark::State& state) {
         lighting_pairs<float>(state, name, "independent", technique);
       });

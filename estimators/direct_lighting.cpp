@@ -8,6 +8,7 @@
 #include "core/numbers.h"
 #include "estimators/kernels.h"
 #include "estimators/local_pixel.h"
+#include "estimators/skip_worth.h"
 #include "scenes/closed_form.h"
 
 namespace halfslope {
@@ -199,11 +200,12 @@ std::vector<std::string> DirectLighting::skips() const {
   }
   if (unshadowed > 0) {
     lines.push_back(
-        fmt::format("{} of {} sampled pixels have nothing that could come between them and a light: no shadow rays",
-                    unshadowed, pixels() - constant));
+        fmt::format("{} of {} sampled pixels have nothing that could come between them and a light: no shadow rays{}",
+                    unshadowed, pixels() - constant, worth(kWorthNoShadowRay)));
   }
-  if (emitters_.lights.size() == 1) lines.push_back("one light: no light choice, and no dimension for it");
-  if (channels_ == 1) lines.push_back("grey scene: one channel");
+  if (emitters_.lights.size() == 1)
+    lines.push_back("one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice));
+  if (channels_ == 1) lines.push_back("grey scene: one channel" + worth(kWorthOneChannel));
   return lines;
 }
 

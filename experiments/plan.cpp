@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "experiments/joined.h"
 #include "experiments/left_out_counts.h"
+#include "experiments/plan_notes.h"
 #include "experiments/reference.h"
 
 namespace halfslope {
@@ -175,25 +176,6 @@ void remove_repeats(std::vector<std::string>& lines) {
   lines = std::move(unique);
 }
 
-void note_sharing(Plan& plan) {
-  for (const Pass& pass : plan.passes) {
-    if (pass.estimators.size() > 1) {
-      std::vector<std::string> names;
-      for (const std::size_t e : pass.estimators) names.push_back(plan.scenes[pass.scene].estimators[e].name);
-      plan.skips.push_back(fmt::format("{}, {}, {}: {} share one pass over the same samples",
-                                       plan.scenes[pass.scene].name, pass.sampler, to_string(pass.precision),
-                                       joined(names)));
-    }
-    if (pass.sequence && pass.samples.size() > 1) {
-      const std::span smaller(pass.samples.data(), pass.samples.size() - 1);
-      plan.skips.push_back(fmt::format(
-          "{}, {}, {}: a sequence, so N = {} {} of one pass to {}", plan.scenes[pass.scene].name, pass.sampler,
-          to_string(pass.precision), smaller.front(),
-          smaller.size() > 1 ? fmt::format("… {} are prefixes", smaller.back()) : "is a prefix", pass.samples.back()));
-    }
-  }
-}
-
 }  // namespace
 
 std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, const Layout& layout,
@@ -287,6 +269,7 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
                 plan.left_out.front());
   }
   for (std::size_t p = 0; p < plan.passes.size(); ++p) add_units(plan, p);
+  note_unused_techniques(plan);
   note_sharing(plan);
   const std::size_t before = plan.left_out.size();
   plan.measures = plan_measures(spec, catalogue.samplers, plan.left_out);

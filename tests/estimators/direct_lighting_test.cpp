@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "estimators/skip_worth.h"
 #include "scenes/catalogue.h"
 #include "tests/estimators/scene_builder.h"
 
@@ -105,8 +106,10 @@ TEST(DirectLighting, SkipsSayWhatIsNotDoneAndWhy) {
       ElementsAre("recognised: diffuse receivers under unoccluded polygon, disk or sphere lights, in closed form",
                   "2 of 3 pixels see only background, what does not reflect or what no light reaches: constant, "
                   "not sampled",
-                  "1 of 1 sampled pixels have nothing that could come between them and a light: no shadow rays",
-                  "one light: no light choice, and no dimension for it", "grey scene: one channel"));
+                  "1 of 1 sampled pixels have nothing that could come between them and a light: no shadow rays" +
+                      worth(kWorthNoShadowRay),
+                  "one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice),
+                  "grey scene: one channel" + worth(kWorthOneChannel)));
   const Primitive ball = sphere({0.25, 0.25, 1}, 0.2);  // between the point and the light
   const Primitive red = emitting(sphere({0, 0, 4}, 0.1), Rgb(1, 0, 0));
   EXPECT_THAT(lighting(scene_of({floor_tile(), light, red, ball}, {at_floor})).skips(), IsEmpty());
