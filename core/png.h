@@ -29,9 +29,10 @@ struct RgbImage {
   }
 };
 
-/// The bytes of a PNG file (W3C, Portable Network Graphics, 2nd ed.) of colour type 2, 8 bits, marked as sRGB, and with
-/// its physical size where `pixels_per_inch` > 0. They depend on the image alone (and on the libpng and zlib
-/// installed): no date, no text. The image must not be empty. Throws Error(kIo) where it cannot be encoded.
+/// The bytes of a PNG file (W3C, Portable Network Graphics, 2nd ed.) of 8 bits a channel, one channel where
+/// the image is grey throughout and three elsewhere, marked as sRGB, and with its physical size where `pixels_per_inch`
+/// > 0. They depend on the image alone (and on the libpng and zlib installed): no date, no text. The image must not be
+/// empty. Throws Error(kIo) where it cannot be encoded.
 std::string encode_png(const RgbImage& image, double pixels_per_inch = 0);
 
 /// Writes encode_png()'s bytes atomically (core/atomic_file.h). Throws Error(kIo).

@@ -16,7 +16,7 @@ namespace halfslope {
 namespace {
 
 constexpr double kTitle = 18, kPanelHeader = 13, kLegendLine = 9.5, kGap = 12, kFooter = 14, kSample = 18, kEdge = 1;
-constexpr double kGuideMargin = 17;  // right of the frame, for slopes that leave there
+constexpr double kGuideMargin = 20;  // right of the frame, for slopes that leave there
 constexpr std::size_t kMostPanels = 24;
 
 /// The least and the greatest of some positive values.

@@ -22,12 +22,13 @@ RgbImage noise(int width, int height, unsigned seed) {
 }
 
 /// libpng's own reader, by its simplified interface, which verifies every chunk's CRC.
-RgbImage decode(const std::string& bytes) {
+RgbImage decode(const std::string& bytes, png_uint_32 stored = PNG_FORMAT_RGB) {
   png_image png = {};
   png.version = PNG_IMAGE_VERSION;
   EXPECT_NE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()), 0) << png.message;
   EXPECT_EQ(png.warning_or_error, 0u) << png.message;
-  EXPECT_EQ(png.format, static_cast<png_uint_32>(PNG_FORMAT_RGB));  // as stored: three channels of 8 bits
+  EXPECT_EQ(png.format, stored);
+  png.format = PNG_FORMAT_RGB;
   RgbImage image(static_cast<int>(png.width), static_cast<int>(png.height));
   EXPECT_NE(png_image_finish_read(&png, nullptr, image.values.data(), 0, nullptr), 0) << png.message;
   return image;
@@ -47,6 +48,16 @@ TEST(Png, PixelsComeBackThroughLibpng) {
     EXPECT_EQ(back.height, height);
     EXPECT_EQ(back.values, image.values);
   }
+}
+
+TEST(Png, AGreyImageTakesOneChannel) {
+  RgbImage image = noise(257, 129, 5);
+  for (std::size_t i = 0; i < image.values.size(); i += 3) image.values[i + 1] = image.values[i + 2] = image.values[i];
+  const std::string bytes = encode_png(image);
+  EXPECT_EQ(decode(bytes, PNG_FORMAT_GRAY).values, image.values);
+  image.pixel(256, 128)[1] ^= 1;  // the last pixel alone has a colour
+  EXPECT_EQ(decode(encode_png(image)).values, image.values);
+  EXPECT_LT(bytes.size(), encode_png(image).size());
 }
 
 TEST(Png, BytesDependOnTheImageAlone) {
