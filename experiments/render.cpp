@@ -51,7 +51,7 @@ Estimator check_render(const IntegralSource& source, const std::string& name, co
     if (!name.empty()) return catalogue.estimators.parse(name, source.techniques());
     // Both techniques of a rendered scene; what an integrand has.
     return catalogue.estimators.parse(source.techniques().size() > 1 ? "balance" : source.techniques().front().name,
-                           source.techniques());
+                                      source.techniques());
   });
   const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(s.sampler); });
   const Layout layout = estimator.allocation.layout(source.techniques());
