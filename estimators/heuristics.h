@@ -9,9 +9,9 @@
 //
 //   average   w_i = 1/n                             the mean of the techniques' own estimators
 //   balance   w_i = c_i p_i / Σ_k c_k p_k           eq. 9.8
-//   power β   w_i = (c_i p_i)^β / Σ_k (c_k p_k)^β   eq. 9.9
-//   cutoff α  w_i = c_i p_i / Σ_k {c_k p_k : c_k p_k ≥ α q} where c_i p_i ≥ α q, q = max_k c_k p_k, else 0   eq. 9.10
-//   maximum   w_i = 1 for the first i with c_i p_i = q, else 0                                              eq. 9.11
+//   power β   w_i = (c_i p_i)^β / Σ_k (c_k p_k)^β   section 9.2.3
+//   cutoff α  w_i = c_i p_i / Σ_k {c_k p_k : c_k p_k ≥ α q} where c_i p_i ≥ α q, q = max_k c_k p_k, else 0
+//   section 9.2.3 maximum   w_i = 1 for the first i with c_i p_i = q, else 0   section 9.2.3
 //
 // Densities span more orders of magnitude than binary32 has, and their powers more still. So every weight is made of
 // the ratios r_k = c_k p_k / max_l c_l p_l, which lie in [0, 1] with one of them 1: sums lie in [1, n], nothing
