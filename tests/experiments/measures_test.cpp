@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <csignal>
 
 #include "analysis/discrepancy.h"
@@ -167,10 +168,16 @@ TEST_F(Discrepancy, TheSummaryAndTheDryRunTellOfIt) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("done: run, discrepancy, 448 samples in "));
   const CsvTable table = CsvTable::read(folder_ / "out/discrepancy.csv");
-  double star = 0, l2_star = 0;
-  for (std::size_t r = 64; r < 96; r += 2)
-    star += table.number(r, "value") / 16, l2_star += table.number(r + 1, "value") / 16;
-  EXPECT_THAT(ended.out, ContainsRegex(fmt::format("\n  halton-owen  16 +16 +{:.3g} +{:.3g}\n", star, l2_star)));
+  // The mean of each over 16 replicates, and 2.131 standard errors (Student's t, 15 degrees of freedom) to both sides.
+  std::string row = "\n  halton-owen  16 +16";
+  for (const std::size_t measure : {0, 1}) {
+    double mean = 0, squares = 0;
+    for (std::size_t r = 64 + measure; r < 96; r += 2) mean += table.number(r, "value") / 16;
+    for (std::size_t r = 64 + measure; r < 96; r += 2) squares += std::pow(table.number(r, "value") - mean, 2);
+    const double half = 2.13144954556 * std::sqrt(squares / 15 / 16);
+    row += fmt::format(" +{:.3g} +\\[{:.3g}, {:.3g}\\]", mean, mean - half, mean + half);
+  }
+  EXPECT_THAT(ended.out, ContainsRegex(row + "\n"));
   EXPECT_THAT(read_file(folder_ / "out/manifest.json"), HasSubstr("\"measures\": ["));
 }
 
