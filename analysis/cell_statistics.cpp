@@ -86,6 +86,8 @@ CellStatistics summarise(const CellData& data) {
   status.mark_if(exact, "exact");
   status.mark_if(deterministic, "deterministic");
   status.mark_if(!deterministic && data.replicates < kCertifiedReplicates, "few-replicates");
+  // Replicates that all err alike: the estimator has not met what contributes, or rounding is all that is left.
+  status.mark_if(!deterministic && !exact && row.variance == 0.0, "no-spread");
   status.mark_if(row.kurtosis && *row.kurtosis > std::max(5.0, replicates / 40), "heavy-tailed");
   status.mark_if(not_positive || data.reference_mse > kReferenceShare * data.mse.mean, "reference-limited");
   row.status = status.text();

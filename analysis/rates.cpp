@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "analysis/bootstrap.h"
 #include "analysis/compensated_sum.h"
@@ -124,12 +125,13 @@ RateFit fit_rate(std::span<const double> samples, std::span<const std::vector<do
   fit.samples_hi = *largest;
 
   std::vector<double> measured(samples.size());
-  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false;
+  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false, no_spread = true;
   for (std::size_t j = 0; j < samples.size(); ++j) {
     assert_equal(mse[j].size(), mse[0].size(), "replicates at each sample count");
     measured[j] = mean_of(mse[j]);
     invalid |= !std::isfinite(measured[j]);
     exact |= measured[j] == 0;
+    no_spread = no_spread && std::ranges::adjacent_find(mse[j], std::not_equal_to<>()) == mse[j].end();
     reference_limited |= reference_mse[j] > kReferenceShare * measured[j];
     rounding_limited |= measured[j] > 0 && measured[j] < 100 * rounding_mse;
   }
@@ -139,8 +141,9 @@ RateFit fit_rate(std::span<const double> samples, std::span<const std::vector<do
   status.mark_if(exact, "exact");
   status.mark_if(reference_limited, "reference-limited");
   status.mark_if(rounding_limited, "rounding-limited");
-  const bool refused = !status.ok();
   const std::size_t replicates = mse[0].size();
+  status.mark_if(no_spread && replicates > 1 && !invalid && !exact, "no-spread");
+  const bool refused = !status.ok();
   status.mark_if(replicates == 1, "deterministic");
   status.mark_if(replicates > 1 && replicates < kCertifiedReplicates, "few-replicates");
   fit.status = status.text();

@@ -21,8 +21,13 @@ RgbImage tone_mapped_image(std::span<const double> values, int width, int height
   assert_equal(channels == 1 || channels == 3, true, "one channel or three");
   RgbImage image(width, height);
   assert_equal(values.size() * 3, image.values.size() * static_cast<std::size_t>(channels), "values of an image");
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    image.values[i] = tone_mapped(values[channels == 3 ? i : i / 3], stops);
+  constexpr std::uint8_t kMagenta[3] = {255, 0, 255};
+  const auto of_pixel = static_cast<std::size_t>(channels);
+  for (std::size_t p = 0; 3 * p < image.values.size(); ++p) {
+    const auto pixel = values.subspan(p * of_pixel, of_pixel);
+    const bool finite = std::all_of(pixel.begin(), pixel.end(), [](double v) { return std::isfinite(v); });
+    for (std::size_t c = 0; c < 3; ++c)
+      image.values[3 * p + c] = finite ? tone_mapped(pixel[c % of_pixel], stops) : kMagenta[c];
   }
   return image;
 }

@@ -85,10 +85,6 @@ CsvReader::CsvReader(std::string_view text, std::string name) : name_(std::move(
 
 CsvReader CsvReader::open(const std::filesystem::path& path) { return {read_file(path), path.string()}; }
 
-bool CsvReader::has(std::string_view column) const {
-  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
-}
-
 std::size_t CsvReader::index(std::string_view column) const {
   const auto found = std::find(columns_.begin(), columns_.end(), column);
   if (found == columns_.end()) {

@@ -24,7 +24,6 @@ class CsvReader {
 
   const std::vector<std::string>& columns() const { return columns_; }
   std::size_t size() const { return rows_.size(); }
-  bool has(std::string_view column) const;
   const std::string& text(std::size_t row, std::string_view column) const;
   /// Null where the cell is empty; an error where it is not a finite number, locale-free as format_number writes it.
   std::optional<double> number(std::size_t row, std::string_view column) const;

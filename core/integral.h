@@ -27,7 +27,8 @@ struct TechniqueCall {
   std::span<const int> set;
 };
 
-/// One integral: f and the techniques that sample it, in one measure throughout.
+/// One integral: f and the techniques that sample it, in one measure throughout. Made for one thread, which may prepare
+/// itself when it is first sampled.
 class Integral {
  public:
   virtual ~Integral() = default;

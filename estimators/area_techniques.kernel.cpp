@@ -107,11 +107,9 @@ void area_points(const LightingCall<scalar_t<F>>& call, const Bsdf& bsdf) {
       for (int l = 0; l < pixel.light_count; ++l) {
         blend_light<F, C>(pixel.lights[l], index == F(static_cast<T>(l)), needs, light);
       }
-      // A uniform point on the whole sphere: height 1 − 2u₁, radius 2√(u₁(1 − u₁)); axes are the world's.
+      // A uniform point on the whole sphere; axes are the world's.
       const F a = load<F>(u1 + i), b = load<F>(u2 + i);
-      const auto azimuth = sin_cos_2pi(b);
-      const F ring = two * sqrt(a * (one - a));
-      const Vec<F> world = {ring * azimuth.cos, ring * azimuth.sin, fma(F(T(-2)), a, one)};
+      const Vec<F> world = uniform_sphere(a, b);
       Vec<F> normal = {dot(row_x, world), dot(row_y, world), dot(row_z, world)};
       Vec<F> y = light.center + light.radius * normal;
       if (needs.flats) {
@@ -119,9 +117,9 @@ void area_points(const LightingCall<scalar_t<F>>& call, const Bsdf& bsdf) {
         F s = fma(two, a, F(T(-1))), t = fma(two, b, F(T(-1)));
         if (needs.disks) {
           const auto disk = light.disk == one;
-          const F radius = sqrt(a);
-          s = select(disk, radius * azimuth.cos, s);
-          t = select(disk, radius * azimuth.sin, t);
+          const DiskPoint<F> inside = uniform_disk(a, b);
+          s = select(disk, inside.x, s);
+          t = select(disk, inside.y, t);
         }
         const Vec<F> flat = light.center + s * light.u + t * light.v;
         y = {select(sphere, y.x, flat.x), select(sphere, y.y, flat.y), select(sphere, y.z, flat.z)};

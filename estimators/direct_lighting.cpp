@@ -199,9 +199,9 @@ std::vector<std::string> DirectLighting::skips() const {
         constant, pixels()));
   }
   if (unshadowed > 0) {
-    lines.push_back(
-        fmt::format("{} of {} sampled pixels have nothing that could come between them and a light: no shadow rays{}",
-                    unshadowed, pixels() - constant, worth(kWorthNoShadowRay)));
+    lines.push_back(fmt::format(
+        "{} of {} sampled pixels have nothing that could come between them and a light: no shadow rays there{}",
+        unshadowed, pixels() - constant, worth(kWorthNoShadowRay)));
   }
   if (emitters_.lights.size() == 1)
     lines.push_back("one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice));

@@ -85,7 +85,7 @@ void directions(const LightingCall<scalar_t<F>>& call, const Bsdf& bsdf) {
       mask_t<F> seen = zero > zero;
       for (int l = 0; l < pixel.light_count; ++l) {
         const LocalLight<T>& candidate = pixel.lights[l];
-        Intersection<F> x;
+        ShapeHit<F> x;
         if (!candidate.reaches || !intersect(candidate.shape, point.wi, x)) continue;
         mask_t<F> first = x.hit & (x.distance < point.distance);
         // A flat light emits from its front, against which the ray must run.

@@ -43,7 +43,8 @@ class EstimatorCatalogue {
   static EstimatorCatalogue built_in();
 
   /// Adds a heuristic without parameters under info.name, which is letters, digits, '-' and '_'; a name that list()
-  /// has already is an assertion failure. `weight` is called from several threads, for each sample of each technique.
+  /// has already is an assertion failure. `weight` is called from several threads, for each sample of each
+  /// technique; a run folder knows it by its name alone, so a changed one wants another name or --overwrite.
   void add(EstimatorInfo info, WeightFunction weight);
   /// Techniques first, then heuristics in the order they were added.
   std::vector<EstimatorInfo> list() const;

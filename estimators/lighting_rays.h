@@ -13,7 +13,7 @@
 namespace halfslope::kernel {
 
 template <class F>
-struct Intersection {
+struct ShapeHit {
   mask_t<F> hit;
   F distance, cosine;  ///< cos ψ at the surface, ≥ 0; both hold where `hit`
 };
@@ -21,7 +21,7 @@ struct Intersection {
 /// Where the ray from the origin along the unit vector d meets the shape at a positive distance; false, and `result`
 /// not to be read, where no lane does.
 template <class F>
-inline bool intersect(const LocalShape<scalar_t<F>>& shape, const Vec<F>& d, Intersection<F>& result) {
+inline bool intersect(const LocalShape<scalar_t<F>>& shape, const Vec<F>& d, ShapeHit<F>& result) {
   using T = scalar_t<F>;
   const F zero(T(0));
   const Vec<F> center = broadcast<F>(shape.center);
@@ -70,7 +70,7 @@ inline mask_t<F> unoccluded(const PixelData<scalar_t<F>>& pixel, const Vec<F>& d
   using T = scalar_t<F>;
   for (int o = 0; o < pixel.occluder_count && any_lane(visible); ++o) {
     const LocalShape<T>& shape = pixel.occluders[o];
-    Intersection<F> x;
+    ShapeHit<F> x;
     if (!intersect(shape, d, x)) continue;
     const auto other = light != F(static_cast<T>(shape.light));
     visible = visible & !(x.hit & (x.distance < distance) & other);

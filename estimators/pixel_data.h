@@ -35,7 +35,7 @@ struct LocalLight {
   LocalShape<T> shape;
   T radiance[3] = {};      ///< 0 where it cannot reach the receiver
   T pdf_area = 0;          ///< of technique `light`: 1/area over the number of lights
-  T pdf_area_surface = 0;  ///< of technique `surface`: one over the area of all surfaces
+  T pdf_area_surface = 0;  ///< of technique `surface`: the probability of its light over the light's area
   bool reaches = false;
 };
 

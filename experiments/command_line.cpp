@@ -136,7 +136,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   reference_app->add_option("--scene", reference.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
   reference_app->add_option("--resolution", reference.resolution, "WIDTH,HEIGHT")->type_name("W,H");
   reference_app
-      ->add_option("--samples", reference.samples, "N of each replicate (default 2^19 up to 64 pixels, else 8192)")
+      ->add_option("--samples", reference.samples,
+                   "N of each replicate (default 2^19 up to 64 pixels, up to 2^28 where that is not enough, else 8192)")
       ->type_name("N");
   reference_app
       ->add_option("--relative-error", reference.relative_error,
@@ -176,7 +177,9 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
             spelling, [&figure, key](const std::string& value) { figure.keys[key] = value; }, help)
         ->type_name("VALUE");
   }
-  figure_app->add_option("--threads", figure.threads, "threads; the figure does not depend on it (default: all cores)")
+  figure_app
+      ->add_option("--threads", figure.threads,
+                   "veach, glossy: threads; the figure does not depend on it (default: all cores)")
       ->check(CLI::Range(1, 4096));
   figure_app->add_flag("--quiet", figure.quiet, "no progress");
 

@@ -107,6 +107,7 @@ int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   ReferenceGoal goal;
   const bool few = pixels.size() <= kFewPixels;
   goal.samples = a.samples.value_or(few ? 1 << 19 : 8192);
+  if (few && !a.samples) goal.most_samples = std::uint64_t{1} << 28;
   if (goal.samples < 4) fail(ExitCode::kUsage, "--samples: at least 4, found {}", goal.samples);
   goal.compare_samples = goal.samples / 4;
   goal.relative_error = a.relative_error.value_or(few ? 1e-5 : 1e-3);

@@ -51,18 +51,22 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
   } else if (what == "figures") {
     for (const FigureInfo& f : figure_catalogue()) rows.push_back({f.name, f.description, f.reference, ""});
   } else {
-    rows = {{"ok", "nothing to say against the row's numbers", "", ""},
-            {"few-replicates", "below 16 replicates: the intervals are not certified", "", ""},
-            {"heavy-tailed", "kurtosis above max(5, R/40): rare large errors; the intervals are not certified", "", ""},
-            {"reference-limited", "the reference's own variance is more than 10 % of the measured error, or all of it",
-             "", ""},
-            {"rounding-limited", "the measured error is within reach of the precision's rounding: no rate is fitted",
-             "", ""},
-            {"deterministic", "one replicate: no variance, no kurtosis, no intervals", "", ""},
-            {"exact", "every error is 0", "", ""},
-            {"invalid", "an estimate or a reference is not finite; manifest.json names the first", "", ""},
-            {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
-            {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""}};
+    rows = {
+        {"ok", "nothing to say against the row's numbers", "", ""},
+        {"few-replicates", "below 16 replicates: the intervals are not certified", "", ""},
+        {"no-spread",
+         "all replicates err alike: nothing that contributes was met, or only rounding is left; no interval, no rate",
+         "", ""},
+        {"heavy-tailed", "kurtosis above max(5, R/40): rare large errors; the intervals are not certified", "", ""},
+        {"reference-limited", "the reference's own variance is more than 10 % of the measured error, or all of it", "",
+         ""},
+        {"rounding-limited", "the measured error is within reach of the precision's rounding: no rate is fitted", "",
+         ""},
+        {"deterministic", "one replicate: no variance, no kurtosis, no intervals", "", ""},
+        {"exact", "every error is 0", "", ""},
+        {"invalid", "an estimate or a reference is not finite; manifest.json names the first", "", ""},
+        {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
+        {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""}};
   }
   return rows;
 }

@@ -29,8 +29,9 @@ void check_names(const char* flag, const std::vector<std::string>& wanted, const
   }
   for (const std::string& name : wanted) {
     if (std::find(found.begin(), found.end(), name) == found.end()) {
-      fail(ExitCode::kBadInput, "{}: the run has no {} '{}'{}; it has {}", flag, column, name,
-           did_you_mean(name, found), joined(found));
+      const std::string nearest = did_you_mean(name, found);
+      fail(ExitCode::kUsage, "{}: the run has no {} '{}'{} it has {}", flag, column, name,
+           nearest.empty() ? ";" : nearest, joined(found));
     }
   }
 }
@@ -115,7 +116,7 @@ std::vector<ConvergenceLine> read_convergence_lines(const std::filesystem::path&
     add_row(*line, table, r);
   }
   if (lines.empty()) {
-    fail(ExitCode::kBadInput, "{}: no row has all of --scene, --estimators, --samplers and --precision that were asked",
+    fail(ExitCode::kUsage, "{}: no row has all of --scene, --estimators, --samplers and --precision that were asked",
          path.string());
   }
   for (ConvergenceLine& line : lines) {

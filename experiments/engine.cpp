@@ -152,9 +152,6 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     message("{}: everything was measured already; the tables are written anew\n", spec.name);
   }
   journal.sync();
-  outcome.measured =
-      measure_points(plan.measures, catalogue.samplers, options.threads, spec.name + ", discrepancy", options.quiet);
-
   AtomicFile replicates_file(folder.path("replicates.csv"));
   ReplicatesTable replicates;
   const CellVisitor visitor = {
@@ -174,10 +171,18 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   write_reference_images(folder.path(), plan, references);
   write("rates.csv", rates_csv(plan, outcome.results));
-  write_discrepancy_csv(folder.path("discrepancy.csv"), plan.measures, outcome.measured);
   write("regions.csv", regions_csv(plan, outcome.results));
   write("convergence.csv", convergence_csv(plan, outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
+  // Last, since it is not part of the journal: what an interruption costs is these alone.
+  outcome.measured =
+      measure_points(plan.measures, catalogue.samplers, options.threads, spec.name + ", discrepancy", options.quiet);
+  if (plan.measures.rows() > 0) {
+    write_discrepancy_csv(folder.path("discrepancy.csv"), plan.measures, outcome.measured);
+  } else {
+    std::error_code ignored;  // of an earlier run that asked for some
+    std::filesystem::remove(folder.path("discrepancy.csv"), ignored);
+  }
   return outcome;
 }
 

@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "experiments/command_flags.h"
 #include "experiments/figures.h"
+#include "experiments/message.h"
 #include "experiments/picture_labels.h"
 #include "experiments/render.h"
 
@@ -109,8 +110,9 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
   if (count > 4)
     fail(ExitCode::kUsage, "--estimators and --samplers: at most 4 pictures side by side, found {}", count);
   const std::uint64_t samples = spec.samples.counts.empty() ? defaults.samples : spec.samples.counts.front();
+  if (!make_source(catalogue, scene, std::nullopt)->takes_resolution())
+    fail(ExitCode::kUsage, "--scene: '{}' has no picture; a rendered scene with a camera is needed", scene);
   const auto source = make_source(catalogue, scene, spec.resolution ? *spec.resolution : defaults.resolution);
-  if (source->pixels() < 16) fail(ExitCode::kUsage, "--scene: '{}' has no picture; a rendered scene is needed", scene);
   const double stops = request.exposure.value_or(defaults.exposure);
 
   std::vector<RenderSettings> jobs;
@@ -124,7 +126,7 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
       job.threads = request.threads;
       job.quiet = request.quiet;
       job.label = fmt::format("{}: {}, {}", request.name, estimator, sampler);
-      job.estimator = check_render(*source, estimator, job, catalogue);
+      job.estimator = check_render(*source, estimator, job, catalogue, {"--estimators", "--samplers"});
     }
   }
   std::vector<Panel> panels;
@@ -132,8 +134,10 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
     const std::string title = samplers.size() == 1     ? estimator_title(job.estimator.name)
                               : estimators.size() == 1 ? job.sampler
                                                        : job.estimator.name + ", " + job.sampler;
-    panels.push_back({title, tone_mapped_image(render_replicate(*source, job, catalogue), source->width(),
-                                               source->height(), source->channels(), stops)});
+    const std::vector<double> values = render_replicate(*source, job, catalogue);
+    const auto bad = std::count_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
+    if (bad > 0) message("halfslope: {}: {} values are not finite; their pixels are magenta\n", job.label, bad);
+    panels.push_back({title, tone_mapped_image(values, source->width(), source->height(), source->channels(), stops)});
   }
 
   const PictureLabels labels = picture_labels(scene, source->width(), source->height());

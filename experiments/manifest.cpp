@@ -39,6 +39,7 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   manifest["schema_version"] = 1;
   manifest["name"] = spec.name;
   manifest["spec"] = Json::parse(canonical_json(spec));
+  if (!spec.measures.empty()) manifest["spec"]["measures"] = spec.measures;
   manifest["spec_hash"] = spec_hash(spec);
   manifest["version"] = version();
   manifest["compiler"] = compiler();

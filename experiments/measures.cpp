@@ -141,8 +141,8 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
   });
   if (interrupted()) {
     fail(ExitCode::kInterrupted,
-         "interrupted while the samplers' points were measured; everything else is done: run the same command again to "
-         "go on");
+         "interrupted while the samplers' points were measured; everything else is done and written: run the same "
+         "command again for discrepancy.csv");
   }
   progress.finish();
   return measured;

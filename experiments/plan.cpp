@@ -82,7 +82,9 @@ PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std:
     // nothing.
     if (!spec.resolution || spec.scenes.size() == 1) return catalogue.make_scene(name, spec.resolution);
     auto source = catalogue.make_scene(name, std::nullopt);
-    return source->takes_resolution() ? catalogue.make_scene(name, spec.resolution) : std::move(source);
+    if (source->takes_resolution()) return catalogue.make_scene(name, spec.resolution);
+    plan.skips.push_back(fmt::format("{}: is no picture: resolution does not apply", name));
+    return source;
   };
   // A file's fault stays the file's, whoever named it: its errors begin with its own line.
   scene.source = name.ends_with(".xml") ? make() : at(spec, "scene", make);
@@ -110,6 +112,17 @@ PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std:
   return scene;
 }
 
+// What is wrong with an estimator that no scene takes: as told by the scene that offers most, whose message knows most.
+std::string best_problem(const Plan& plan, const std::string& estimator) {
+  const auto most = std::max_element(plan.scenes.begin(), plan.scenes.end(), [](const auto& a, const auto& b) {
+    return a.source->techniques().size() < b.source->techniques().size();
+  });
+  for (const auto& [name, problem] : most->misfits) {
+    if (name == estimator) return problem;
+  }
+  return "";
+}
+
 // An estimator that some scene takes is left out where it does not fit; one that fits nowhere is a mistake.
 void place_estimators(const Spec& spec, Plan& plan) {
   for (PlannedScene& scene : plan.scenes) {
@@ -119,7 +132,7 @@ void place_estimators(const Spec& spec, Plan& plan) {
         return std::any_of(other.estimators.begin(), other.estimators.end(),
                            [&](const Estimator& e) { return e.name == name; });
       });
-      if (!fits_elsewhere) fail_at(spec, "estimators", problem);
+      if (!fits_elsewhere) fail_at(spec, "estimators", best_problem(plan, name));
       left_out.push_back(name);
     }
     if (left_out.empty()) continue;
@@ -219,6 +232,13 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   Plan plan;
   for (const auto& name : spec.scenes) plan.scenes.push_back(plan_scene(spec, catalogue, name, plan));
   place_estimators(spec, plan);
+  const auto is_picture = [](const PlannedScene& scene) { return scene.source->takes_resolution(); };
+  const auto gives_rays = [](const PlannedScene& s) { return !s.source->takes_resolution() && s.source->pixels() > 1; };
+  // As of a lone scene: rays given one by one refuse a resolution, an analytic scene does not mind it.
+  if (spec.resolution && std::any_of(plan.scenes.begin(), plan.scenes.end(), gives_rays) &&
+      std::none_of(plan.scenes.begin(), plan.scenes.end(), is_picture)) {
+    fail_at(spec, "resolution", "no scene is a picture, so `resolution` applies to none");
+  }
   std::vector<std::unique_ptr<Sampler>> samplers;
   for (const auto& name : spec.samplers)
     samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));

@@ -7,6 +7,12 @@
 #include "experiments/joined.h"
 
 namespace halfslope {
+namespace {
+
+// What skips are worth was measured on these.
+bool is_rendered(const PlannedScene& scene) { return !scene.source->regions().empty(); }
+
+}  // namespace
 
 void note_unused_techniques(Plan& plan) {
   for (const PlannedScene& scene : plan.scenes) {
@@ -22,7 +28,7 @@ void note_unused_techniques(Plan& plan) {
     if (unused.empty() || scene.estimators.empty()) continue;
     plan.skips.push_back(fmt::format("{}: no estimator draws {}: none of their samples, and none of their densities{}",
                                      scene.name, joined(unused),
-                                     unused.size() > 2 ? worth(kWorthNoUnusedTechniques) : ""));
+                                     unused.size() > 2 && is_rendered(scene) ? worth(kWorthNoUnusedTechniques) : ""));
   }
 }
 
@@ -31,9 +37,10 @@ void note_sharing(Plan& plan) {
     if (pass.estimators.size() > 1) {
       std::vector<std::string> names;
       for (const std::size_t e : pass.estimators) names.push_back(plan.scenes[pass.scene].estimators[e].name);
-      plan.skips.push_back(fmt::format("{}, {}, {}: {} share one pass over the same samples{}",
-                                       plan.scenes[pass.scene].name, pass.sampler, to_string(pass.precision),
-                                       joined(names), names.size() > 2 ? worth(kWorthSharedPass) : ""));
+      plan.skips.push_back(
+          fmt::format("{}, {}, {}: {} share one pass over the same samples{}", plan.scenes[pass.scene].name,
+                      pass.sampler, to_string(pass.precision), joined(names),
+                      names.size() > 2 && is_rendered(plan.scenes[pass.scene]) ? worth(kWorthSharedPass) : ""));
     }
     if (pass.sequence && pass.samples.size() > 1) {
       const std::span smaller(pass.samples.data(), pass.samples.size() - 1);

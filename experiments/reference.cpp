@@ -1,40 +1,19 @@
 #include "experiments/reference.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <optional>
 
 #include "analysis/compensated_sum.h"
-#include "core/atomic_file.h"
 #include "core/error.h"
-#include "core/kernel_library.h"
-#include "core/version.h"
-#include "estimators/pass_evaluator.h"
-#include "experiments/bytes.h"
-#include "experiments/hash64.h"
-#include "experiments/interrupt.h"
-#include "experiments/message.h"
-#include "experiments/parallel.h"
-#include "experiments/progress.h"
+#include "experiments/reference_renderer.h"
 
 namespace halfslope {
 namespace {
 
 constexpr std::int64_t kFirstReplicates = 16;
-constexpr std::size_t kTile = 16;
-constexpr std::size_t kFewPixels = 256;
-
-/// A reference in the making: the moments over replicates of every integral, at N and at the smaller N it will judge.
-struct State {
-  std::vector<Moments> full, compared;
-  std::vector<double> replicate_sums;  ///< Σ over integrals, a number for each replicate
-
-  std::int64_t replicates() const { return static_cast<std::int64_t>(replicate_sums.size()); }
-};
+constexpr std::int64_t kFewReplicates = 64;  // beyond which a larger N is tried first, where that is allowed
+constexpr std::uint64_t kMoreSamples = 8;
 
 double mean_variance(const std::vector<Moments>& moments) {
   CompensatedSum sum;
@@ -55,181 +34,6 @@ double relative_error(const std::vector<Moments>& moments) {
   return uncertain > 0 ? std::sqrt(sum.value() / static_cast<double>(uncertain)) : 0;
 }
 
-class Renderer {
- public:
-  Renderer(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
-           const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers)
-      : source_(source), name_(name), pixels_(pixels), options_(options), samplers_(samplers) {
-    for (std::size_t i = 0; i < source.reference_techniques(); ++i) {
-      allocation_.techniques.push_back(static_cast<int>(i));
-      allocation_.counts.push_back(1);
-    }
-    const auto round = static_cast<std::uint64_t>(allocation_.round());
-    rounds_ = {std::max<std::uint64_t>(1, goal.compare_samples / round),
-               std::max<std::uint64_t>(2, goal.samples / round)};
-    if (rounds_[0] >= rounds_[1]) rounds_[0] = rounds_[1] / 2;
-    if (const auto legal = samplers.make("halton-owen")->illegal(rounds_[1], allocation_.layout(source.techniques()))) {
-      fail(ExitCode::kBadInput, "scene '{}': a reference takes at most N = {} samples a replicate, asked for {}", name,
-           legal->below.value_or(0) * round, rounds_[1] * round);
-    }
-    key_text_ = fmt::format("halfslope {} reference\n{}\n{}\nrounds {} {}\npixels", version(), isa_class(active_isa()),
-                            source.fingerprint(), rounds_[0], rounds_[1]);
-    for (const int pixel : pixels) key_text_ += fmt::format(" {}", pixel);
-  }
-
-  std::uint64_t samples() const { return rounds_[1] * static_cast<std::uint64_t>(allocation_.round()); }
-
-  bool cached(std::int64_t replicates) const {
-    return !options_.cache.empty() && std::filesystem::exists(file(replicates));
-  }
-  /// Brings the state to `replicates`, from the cache if it is there.
-  void extend(State& state, std::int64_t replicates) {
-    if (load(state, replicates)) return;
-    render(state, replicates);
-    save(state);
-  }
-
- private:
-  void render(State& state, std::int64_t replicates);
-  std::filesystem::path file(std::int64_t replicates) const;
-  std::string full_key(std::int64_t replicates) const {
-    return fmt::format("{}\nreplicates {}\n", key_text_, replicates);
-  }
-  bool load(State& state, std::int64_t replicates) const;
-  void save(const State& state) const;
-
-  const IntegralSource& source_;
-  const std::string& name_;
-  const std::vector<int>& pixels_;
-  const ReferenceOptions& options_;
-  const SamplerCatalogue& samplers_;
-  Allocation allocation_;
-  std::vector<std::uint64_t> rounds_;
-  std::string key_text_;
-};
-
-/// What one task adds: a tile of pixels over a chunk of replicates.
-struct Piece {
-  std::vector<Moments> full, compared;  ///< of the tile's integrals
-  std::vector<double> sums;             ///< Σ over them, for each replicate of the chunk
-};
-
-void Renderer::render(State& state, std::int64_t replicates) {
-  const auto channels = static_cast<std::size_t>(source_.channels());
-  const std::int64_t first = state.replicates(), more = replicates - first;
-  // Few pixels are split over replicates too, so that every core has work; pieces are joined in their order.
-  const std::size_t chunk = pixels_.size() <= kFewPixels ? kLanes : static_cast<std::size_t>(more);
-  const std::size_t chunks = static_cast<std::size_t>(more) / chunk;
-  const std::size_t tile_pixels = pixels_.size() <= kFewPixels ? 1 : kTile;
-  const std::size_t tiles = (pixels_.size() + tile_pixels - 1) / tile_pixels;
-  const StreamKey key = stream_key(0, "halton-owen", "reference");
-  Progress progress(fmt::format("{}: reference, replicates {} to {}", name_, first + 1, replicates),
-                    static_cast<double>(samples()) * static_cast<double>(more) * static_cast<double>(pixels_.size()),
-                    options_.quiet);
-  std::atomic<bool> stop = false;
-  std::vector<Piece> pieces(tiles * chunks);
-  const auto work = [&](std::size_t index) {
-    const std::size_t tile = index / chunks, begin = index % chunks * chunk;
-    PassEvaluator<double> evaluator(
-        samplers_.make("halton-owen"), source_.techniques(), allocation_,
-        {{allocation_.techniques.size() == 1 ? HeuristicKind::kSingle : HeuristicKind::kBalance, 0}}, rounds_,
-        source_.channels());
-    Piece& piece = pieces[index];
-    piece.sums.resize(chunk);
-    std::vector<double> values(2 * channels * chunk);
-    const auto row = [&](std::size_t n, std::size_t c) { return values.data() + (n * channels + c) * chunk; };
-    const std::size_t end = std::min(pixels_.size(), (tile + 1) * tile_pixels);
-    for (std::size_t p = tile * tile_pixels; p < end; ++p) {
-      const PixelIntegral pixel = source_.pixel(pixels_[p]);
-      for (std::size_t r = 0; r < chunk; r += kLanes) {
-        if (interrupted()) stop = true;
-        if (stop) return;
-        if (pixel.integral) {
-          evaluator.run(*pixel.integral, key, static_cast<std::uint32_t>(pixels_[p]),
-                        static_cast<std::uint32_t>(static_cast<std::size_t>(first) + begin + r));
-        }
-        for (std::size_t n = 0; n < 2; ++n) {
-          for (std::size_t c = 0; c < channels; ++c) {
-            const double* in = pixel.integral ? evaluator.estimates(0, n, static_cast<int>(c)) : nullptr;
-            for (std::size_t l = 0; l < kLanes; ++l) row(n, c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
-          }
-        }
-        progress.advance(static_cast<double>(samples()) * kLanes);
-      }
-      for (std::size_t c = 0; c < channels; ++c) {
-        piece.compared.emplace_back().add(std::span<const double>(row(0, c), chunk));
-        piece.full.emplace_back().add(std::span<const double>(row(1, c), chunk));
-        for (std::size_t r = 0; r < chunk; ++r) piece.sums[r] += row(1, c)[r];
-      }
-    }
-  };
-  with_threads(options_.threads,
-               [&](int) { tbb::parallel_for(std::size_t{0}, pieces.size(), work, tbb::simple_partitioner()); });
-  if (stop) fail(ExitCode::kInterrupted, "interrupted while the reference was rendered; run again to start it anew");
-  progress.finish();
-
-  state.full.resize(pixels_.size() * channels);
-  state.compared.resize(pixels_.size() * channels);
-  for (std::size_t index = 0; index < pieces.size(); ++index) {
-    const std::size_t offset = index / chunks * tile_pixels * channels;
-    for (std::size_t i = 0; i < pieces[index].full.size(); ++i) {
-      state.full[offset + i].merge(pieces[index].full[i]);
-      state.compared[offset + i].merge(pieces[index].compared[i]);
-    }
-  }
-  for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r) {
-    CompensatedSum sum;
-    for (std::size_t t = 0; t < tiles; ++t) sum.add(pieces[t * chunks + r / chunk].sums[r % chunk]);
-    state.replicate_sums.push_back(sum.value());
-  }
-}
-
-std::filesystem::path Renderer::file(std::int64_t replicates) const {
-  const std::string key = full_key(replicates);
-  return options_.cache / fmt::format("reference-{:016x}", hash64(std::as_bytes(std::span(key))));
-}
-
-bool Renderer::load(State& state, std::int64_t replicates) const {
-  if (options_.cache.empty()) return false;
-  try {
-    const std::string text = read_file(file(replicates));
-    std::span<const std::byte> cursor = std::as_bytes(std::span(text));
-    const auto checksum = take_bytes<std::uint64_t>(cursor);
-    if (checksum != hash64(cursor)) return false;
-    const std::string key = full_key(replicates);
-    const auto found = take_bytes<char>(cursor, std::min(cursor.size(), key.size()));
-    if (!std::equal(found.begin(), found.end(), key.begin(), key.end())) return false;
-    const std::size_t integrals = pixels_.size() * static_cast<std::size_t>(source_.channels());
-    State found_state;
-    found_state.full = take_bytes<Moments>(cursor, integrals);
-    found_state.compared = take_bytes<Moments>(cursor, integrals);
-    found_state.replicate_sums = take_bytes<double>(cursor, static_cast<std::size_t>(replicates));
-    state = std::move(found_state);
-    return true;
-  } catch (const Error&) {
-    return false;  // a damaged or unreadable cache is no cache: render again
-  }
-}
-
-void Renderer::save(const State& state) const {
-  if (options_.cache.empty()) return;
-  std::vector<std::byte> body;
-  const std::string key = full_key(state.replicates());
-  append_bytes<char>(body, std::span(key));
-  append_bytes<Moments>(body, std::span(state.full));
-  append_bytes<Moments>(body, std::span(state.compared));
-  append_bytes<double>(body, std::span(state.replicate_sums));
-  std::vector<std::byte> bytes;
-  append_bytes(bytes, hash64(body));
-  bytes.insert(bytes.end(), body.begin(), body.end());
-  try {
-    std::filesystem::create_directories(options_.cache);
-    write_file_atomically(file(state.replicates()), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-  } catch (const std::exception& error) {
-    if (!options_.quiet) message("halfslope: the reference is not kept for later: {}\n", error.what());
-  }
-}
-
 Reference closed_form_reference(const IntegralSource& source, const std::vector<int>& pixels) {
   Reference reference;
   reference.origin = "closed form";
@@ -244,6 +48,66 @@ Reference closed_form_reference(const IntegralSource& source, const std::vector<
   reference.variance.assign(reference.value.size(), 0.0);
   reference.mean = sum.value() / static_cast<double>(reference.value.size());
   return reference;
+}
+
+/// How near a reference came to its goal.
+struct Outcome {
+  bool reached;
+  double share, relative;
+};
+
+Outcome render_until(ReferenceRenderer& renderer, ReferenceState& state, const ReferenceGoal& goal, bool may_grow) {
+  const std::int64_t most = may_grow ? std::min(kFewReplicates, goal.most_replicates) : goal.most_replicates;
+  for (std::int64_t replicates = kFirstReplicates;; replicates *= 2) {
+    renderer.extend(state, replicates);
+    const double own = mean_variance(state.full) / static_cast<double>(replicates);
+    if (!std::isfinite(own)) return {true, 0, 0};  // more would not mend it; the cells will be invalid
+    const double expected = mean_variance(state.compared), share = expected > 0 ? own / expected : 0;
+    const double relative = relative_error(state.full);
+    const bool reached = (goal.error_share == 0 || share <= goal.error_share) &&
+                         (goal.relative_error == 0 || relative <= goal.relative_error);
+    if (reached || 2 * replicates > most) return {reached, share, relative};
+    // Variances fall like one over the replicates, so this many would be needed.
+    const double share_left = goal.error_share > 0 ? share / goal.error_share : 0;
+    const double relative_left = goal.relative_error > 0 ? std::pow(relative / goal.relative_error, 2) : 0;
+    if (may_grow && static_cast<double>(replicates) * std::max(share_left, relative_left) > 2 * kFewReplicates)
+      return {false, share, relative};
+  }
+}
+
+Reference finished(const ReferenceRenderer& renderer, const ReferenceState& state) {
+  Reference reference;
+  reference.samples = renderer.samples();
+  reference.replicates = state.replicates();
+  const auto replicates = static_cast<double>(reference.replicates);
+  reference.origin = fmt::format("balance heuristic, halton-owen, f64, {} replicates of N = {}", reference.replicates,
+                                 reference.samples);
+  for (const Moments& m : state.full) {
+    reference.value.push_back(m.mean);
+    reference.variance.push_back(m.variance() / replicates);
+  }
+  reference.mean_variance = mean_variance(state.full) / replicates;
+  Moments means;
+  std::vector<double> image_means;
+  for (const double sum : state.replicate_sums) image_means.push_back(sum / static_cast<double>(state.full.size()));
+  means.add(std::span<const double>(image_means));
+  reference.mean = means.mean;
+  reference.mean_se = means.standard_error();
+  return reference;
+}
+
+[[noreturn]] void refuse(const std::string& name, const ReferenceRenderer& renderer, const ReferenceState& state,
+                         const ReferenceGoal& goal, const Outcome& outcome) {
+  const std::string spent = fmt::format("scene '{}': after {} replicates of N = {} the reference's", name,
+                                        state.replicates(), renderer.samples());
+  if (goal.error_share > 0 && outcome.share > goal.error_share) {
+    fail(ExitCode::kBadInput, "{} variance is still {:.3g} times what errors at N = {} allow; measure at smaller N",
+         spent, outcome.share / goal.error_share, goal.compare_samples);
+  }
+  fail(ExitCode::kBadInput,
+       "{} relative error is still {:.3g}, and {:.3g} was asked for; give it more --samples or --max-replicates, or "
+       "ask for a larger --relative-error",
+       spent, outcome.relative, goal.relative_error);
 }
 
 }  // namespace
@@ -262,49 +126,15 @@ bool has_closed_form(const IntegralSource& source, const std::vector<int>& pixel
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers) {
   if (has_closed_form(source, pixels)) return closed_form_reference(source, pixels);
-  Renderer renderer(source, name, pixels, goal, options, samplers);
-  State state;
-  double share = 0, relative = 0;
-  std::int64_t replicates = kFirstReplicates;
-  for (;; replicates *= 2) {
-    renderer.extend(state, replicates);
-    const double own = mean_variance(state.full) / static_cast<double>(replicates);
-    if (!std::isfinite(own)) break;  // more replicates would not mend it; the cells will be invalid
-    const double expected = mean_variance(state.compared);
-    share = expected > 0 ? own / expected : 0;
-    relative = relative_error(state.full);
-    if ((goal.error_share == 0 || share <= goal.error_share) &&
-        (goal.relative_error == 0 || relative <= goal.relative_error))
-      break;
-    if (2 * replicates <= goal.most_replicates) continue;
-    const std::string spent =
-        fmt::format("scene '{}': after {} replicates of N = {} the reference's", name, replicates, renderer.samples());
-    if (goal.error_share > 0 && share > goal.error_share) {
-      fail(ExitCode::kBadInput, "{} variance is still {:.3g} times what errors at N = {} allow; measure at smaller N",
-           spent, share / goal.error_share, goal.compare_samples);
-    }
-    fail(ExitCode::kBadInput,
-         "{} relative error is still {:.3g}, and {:.3g} was asked for; give it more --samples or --max-replicates, or "
-         "ask for a larger --relative-error",
-         spent, relative, goal.relative_error);
+  for (ReferenceGoal at = goal;; at.samples *= kMoreSamples) {
+    ReferenceRenderer renderer(source, name, pixels, at, options, samplers);
+    // Scrambled points gain more from N than from replicates, so N grows as long as it may.
+    const bool may_grow = at.samples * kMoreSamples <= goal.most_samples;
+    ReferenceState state;
+    const Outcome outcome = render_until(renderer, state, at, may_grow);
+    if (outcome.reached) return finished(renderer, state);
+    if (!may_grow) refuse(name, renderer, state, at, outcome);
   }
-  Reference reference;
-  reference.samples = renderer.samples();
-  reference.replicates = replicates;
-  reference.origin =
-      fmt::format("balance heuristic, halton-owen, f64, {} replicates of N = {}", replicates, reference.samples);
-  for (const Moments& m : state.full) {
-    reference.value.push_back(m.mean);
-    reference.variance.push_back(m.variance() / static_cast<double>(replicates));
-  }
-  reference.mean_variance = mean_variance(state.full) / static_cast<double>(replicates);
-  Moments means;
-  std::vector<double> image_means;
-  for (const double sum : state.replicate_sums) image_means.push_back(sum / static_cast<double>(state.full.size()));
-  means.add(std::span<const double>(image_means));
-  reference.mean = means.mean;
-  reference.mean_se = means.standard_error();
-  return reference;
 }
 
 std::int64_t cached_replicates(const IntegralSource& source, const std::vector<int>& pixels, const ReferenceGoal& goal,
@@ -312,7 +142,7 @@ std::int64_t cached_replicates(const IntegralSource& source, const std::vector<i
   if (has_closed_form(source, pixels)) return 0;
   const ReferenceOptions options = {0, true, cache};
   const std::string name;
-  const Renderer renderer(source, name, pixels, goal, options, samplers);
+  const ReferenceRenderer renderer(source, name, pixels, goal, options, samplers);
   std::int64_t held = 0;
   for (std::int64_t r = kFirstReplicates; renderer.cached(r); r *= 2) held = r;
   return held;

@@ -46,17 +46,17 @@ void render_rows(const IntegralSource& source, const RenderSettings& s, const Ca
 }  // namespace
 
 Estimator check_render(const IntegralSource& source, const std::string& name, const RenderSettings& s,
-                       const Catalogue& catalogue) {
-  const Estimator estimator = flag("--estimator", [&] {
+                       const Catalogue& catalogue, const RenderFlags& flags) {
+  const Estimator estimator = flag(flags.estimator, [&] {
     if (!name.empty()) return catalogue.estimators.parse(name, source.techniques());
     // Both techniques of a rendered scene; what an integrand has.
     return catalogue.estimators.parse(source.techniques().size() > 1 ? "balance" : source.techniques().front().name,
                                       source.techniques());
   });
-  const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(s.sampler); });
+  const auto sampler = flag(flags.sampler, [&] { return catalogue.samplers.make(s.sampler); });
   const Layout layout = estimator.allocation.layout(source.techniques());
   if (layout.dims() > sampler->info().max_dims) {
-    fail(ExitCode::kUsage, "--sampler: '{}' has {} dimensions; '{}' on scene '{}' takes {}", s.sampler,
+    fail(ExitCode::kUsage, "{}: '{}' has {} dimensions; '{}' on scene '{}' takes {}", flags.sampler, s.sampler,
          sampler->info().max_dims, estimator.name, s.label, layout.dims());
   }
   if (const std::string problem = illegal_samples(estimator, *sampler, layout, s.samples); !problem.empty())

@@ -23,12 +23,17 @@ struct RenderSettings {
   std::string label;  ///< of the progress
 };
 
+/// How a command spells the flags that errors name.
+struct RenderFlags {
+  const char* estimator = "--estimator";
+  const char* sampler = "--sampler";
+};
+
 /// The estimator of that name on the scene (empty: `balance`, or an integrand's only technique), after checking that
 /// the settings' sampler has its dimensions and its N is legal. Throws Error(kUsage) that begins with the flag at
-/// fault:
-/// --estimator, --sampler or --samples.
+/// fault.
 Estimator check_render(const IntegralSource& source, const std::string& estimator, const RenderSettings& settings,
-                       const Catalogue& catalogue);
+                       const Catalogue& catalogue, const RenderFlags& flags = {});
 
 /// The estimates of every pixel: width × height × channels, rows from the top. The settings must have been checked.
 /// Throws Error(kInterrupted) where a signal came meanwhile (experiments/interrupt.h).

@@ -58,8 +58,8 @@ void apply_flag(Spec& spec, std::string_view key, std::string_view value);
 /// flags are at fault, Error(kBadInput) where the file is.
 void validate(const Spec& spec);
 
-/// Everything that determines the numbers of a run, as canonical JSON (sorted keys, no spaces): no name, no places, no
-/// output folder, no threads.
+/// Everything that determines the estimates of a run, as canonical JSON (sorted keys, no spaces): no name, no places,
+/// no output folder, no threads, and no measures, which are taken of the points alone.
 std::string canonical_json(const Spec& spec);
 
 /// 16 hexadecimal digits that stand for canonical_json(spec).

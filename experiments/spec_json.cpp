@@ -21,8 +21,6 @@ std::string canonical_json(const Spec& spec) {
   json["images"] = spec.images;
   json["precision"] = nlohmann::json::array();
   for (Precision precision : spec.precision) json["precision"].push_back(to_string(precision));
-  // Measures change no other number, and without them an experiment is what it was before there were any.
-  if (!spec.measures.empty()) json["measures"] = spec.measures;
   // A path need not be UTF-8; replacing its odd bytes beats refusing it.
   return json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }

@@ -156,6 +156,7 @@ void set_measures(Spec& spec, const Key& key, const SpecValue& value) {
   if (value.is_list || value.items[0].text != "none") {
     for (const SpecItem& item : value.items) {
       const std::string& name = text(key, value, item);
+      if (name == "none") refuse(key, value, item.place, "'none' stands in a list; it stands alone, as a text");
       if (std::find(known.begin(), known.end(), name) == known.end())
         refuse(key, value, item.place, fmt::format("there is no measure '{}'{}", name, did_you_mean(name, known)));
       append_unique(key, value, item, list, name);

@@ -5,6 +5,7 @@
 // v = 1 − cos α or of sin²α, by log1p, and a sampled angle comes with both.
 #pragma once
 
+#include <limits>
 #include <numbers>
 
 #include "core/packet.h"

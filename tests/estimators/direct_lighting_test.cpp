@@ -106,7 +106,7 @@ TEST(DirectLighting, SkipsSayWhatIsNotDoneAndWhy) {
       ElementsAre("recognised: diffuse receivers under unoccluded polygon, disk or sphere lights, in closed form",
                   "2 of 3 pixels see only background, what does not reflect or what no light reaches: constant, "
                   "not sampled",
-                  "1 of 1 sampled pixels have nothing that could come between them and a light: no shadow rays" +
+                  "1 of 1 sampled pixels have nothing that could come between them and a light: no shadow rays there" +
                       worth(kWorthNoShadowRay),
                   "one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice),
                   "grey scene: one channel" + worth(kWorthOneChannel)));

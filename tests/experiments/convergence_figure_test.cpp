@@ -196,7 +196,7 @@ TEST_F(ConvergenceFigure, FiltersChooseLines) {
        {std::pair("--samplers", "c"), {"--estimators", "ligth"}, {"--precision", "f32"}, {"--scene", "toy"}}) {
     const Ended ended =
         command({"figure", "convergence", "--run", run, flag, value, "-o", (folder_ / "x.svg").string()});
-    EXPECT_EQ(ended.code, 3) << ended.err;
+    EXPECT_EQ(ended.code, 2) << ended.err;
     EXPECT_THAT(ended.err, HasSubstr(std::string(flag) + ": the run has no "));
   }
   EXPECT_FALSE(std::filesystem::exists(folder_ / "x.svg"));

@@ -82,7 +82,7 @@ TEST(HammersleyOwen, NodesFlipUniformlyAndIndependently) {
   // The flip of node (k, prefix) of i/2^m is digit k of x_i for the i of that prefix and then zeros. For m = 4: 15
   // nodes, the first digit of each point's tail (16 more), over 32768 replicates; each is a fair coin, and every two of
   // them are independent, of the second dimension's first digit too: 2 × 2 tables, 3 degrees. False alarm 1e-9 for each
-  // of 528.
+  // of 496.
   constexpr int kDigits = 4;
   constexpr std::uint32_t kGroups = 2048;
   const auto sampler = sampler_named("hammersley-owen");
