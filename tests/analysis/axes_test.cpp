@@ -130,6 +130,9 @@ TEST(ToneMap, IsTheTransferFunctionOfSrgb) {
   EXPECT_EQ(tone_mapped(NAN, 0), 0);
   EXPECT_EQ(tone_mapped(INFINITY, 0), 255);
   EXPECT_EQ(tone_mapped(1, 0), 255);
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(tone_mapped_image(std::vector<double>{nan, 1, -infinity}, 3, 1, 1, 0).values,
+            (std::vector<std::uint8_t>{255, 0, 255, 255, 255, 255, 255, 0, 255}));
   EXPECT_EQ(tone_mapped_image(std::vector<double>{0, 1}, 2, 1, 1, 0).values,
             (std::vector<std::uint8_t>{0, 0, 0, 255, 255, 255}));
   EXPECT_EQ(tone_mapped_image(std::vector<double>{0, 1, 0}, 1, 1, 3, 0).values, (std::vector<std::uint8_t>{0, 255, 0}));

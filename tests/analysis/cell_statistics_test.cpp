@@ -142,6 +142,18 @@ TEST(Summarise, ExactEstimatesHaveErrorZeroAndNoInterval) {
   EXPECT_EQ(row.status, "exact");
 }
 
+TEST(Summarise, ReplicatesThatAllErrAlikeAreMarked) {
+  // A light that no sample met: every estimate is 0, and the error is the whole value.
+  const CellStatistics unseen =
+      summarise(build_cell(std::vector<std::vector<double>>(64, {0, 0}), {0.25, 0.5}, {0, 0}));
+  EXPECT_EQ(unseen.status, "no-spread");
+  EXPECT_DOUBLE_EQ(*unseen.rmse, std::sqrt((0.0625 + 0.25) / 2));
+  EXPECT_FALSE(unseen.rmse_lo || unseen.rmse_hi);
+  std::vector<std::vector<double>> once(64, {0, 0});
+  once[7][0] = 30;
+  EXPECT_EQ(summarise(build_cell(once, {0.25, 0.5}, {0, 0})).status.find("no-spread"), std::string::npos);
+}
+
 TEST(Summarise, HeavyTailsAndFewReplicatesAreMarked) {
   // One replicate in 200 errs by 1: the kurtosis of such a two-point distribution is 1/(q(1 − q)) − 3, q = 1/200.
   Matrix estimates(200, kReference);

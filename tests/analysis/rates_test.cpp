@@ -118,6 +118,16 @@ TEST(FitRate, RefusesWhatHasNoRateAndSaysWhy) {
   EXPECT_EQ(refusal(kSamples, mse, kExactReference), "invalid");
 }
 
+TEST(FitRate, ErrorsWithoutSpreadHaveNoRate) {
+  const std::vector<double> samples = {4, 16, 64}, none = {0, 0, 0};
+  std::vector<std::vector<double>> mse(3, std::vector<double>(64, 0.3));
+  const RateFit fit = fit_rate(samples, mse, none, 1);
+  EXPECT_EQ(fit.status, "no-spread");
+  EXPECT_FALSE(fit.rate || fit.interval);
+  mse[2][5] = 0.2;  // one N is enough to be about something
+  EXPECT_EQ(fit_rate(samples, mse, none, 1).status.find("no-spread"), std::string::npos);
+}
+
 TEST(FitRate, FewReplicatesAreMarkedNotRefused) {
   std::mt19937_64 random(1);
   const RateFit few = fit_rate(kSamples, walks(15, random), kExactReference, 1);

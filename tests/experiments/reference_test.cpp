@@ -149,6 +149,23 @@ TEST(Reference, IsExtendedUntilTheGoalIsMetAndNoFurther) {
   EXPECT_NEAR(more.value[0], (1 - std::cos(9.0)) / 9 + 0.5, t * std::sqrt(more.variance[0]));
 }
 
+TEST(Reference, WhereItMayNGrowsBeforeTheReplicatesDo) {
+  const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
+  ReferenceGoal goal = {.samples = 64, .compare_samples = 16, .relative_error = 1e-4, .most_samples = 32768};
+  const Reference grown = render(source, goal);
+  EXPECT_GT(grown.samples, 64u);
+  EXPECT_LE(grown.samples, 32768u);
+  EXPECT_LE(grown.replicates, 64);
+  EXPECT_LE(std::sqrt(grown.variance[0]) / std::fabs(grown.value[0]), 1e-4);
+  const double t = t_quantile(1 - 5e-7, static_cast<double>(grown.replicates - 1));  // false alarm 1e-6
+  EXPECT_NEAR(grown.value[0], (1 - std::cos(9.0)) / 9 + 0.5, t * std::sqrt(grown.variance[0]));
+  goal.most_samples = 512;  // is not enough: replicates must do the rest
+  goal.relative_error = 1e-4;
+  const Reference limited = render(source, goal);
+  EXPECT_EQ(limited.samples, 512u);
+  EXPECT_GT(limited.replicates, 64);
+}
+
 TEST(Reference, TooFewReplicatesAreAnErrorThatSaysWhatToDo) {
   const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
   const std::string relative =
