@@ -120,9 +120,9 @@ void no_light_choice(benchmark::State& state) {
 
 void no_shadow_ray(benchmark::State& state) {
   Pass clear(floor_under({lamp(kAbove, 0.5, kWhite)}), {"balance"});
-  // In the light's bounding cone, and in nothing's way.
-  const Primitive beside = flat({0.45, 0.2, 1}, 0.05 * Vec3::UnitX(), 0.05 * Vec3::UnitY(), Rgb::Zero());
-  Pass shaded(floor_under({lamp(kAbove, 0.5, kWhite), beside}), {"balance"});
+  // Between the point and the light, and too small to hide much of it.
+  const Primitive between = flat({0.1, 0.3, 1}, 0.01 * Vec3::UnitX(), 0.01 * Vec3::UnitY(), Rgb::Zero());
+  Pass shaded(floor_under({lamp(kAbove, 0.5, kWhite), between}), {"balance"});
   compare(
       state, [&] { clear.run(); }, [&] { shaded.run(); }, kWorthNoShadowRay);
 }

@@ -12,7 +12,7 @@ namespace halfslope {
 namespace {
 
 constexpr std::int64_t kFirstReplicates = 16;
-constexpr std::int64_t kFewReplicates = 64;  // beyond which a larger N is tried first, where that is allowed
+constexpr std::int64_t kFewReplicates = 256;  // beyond which a larger N is tried first, where that is allowed
 constexpr std::uint64_t kMoreSamples = 8;
 
 double mean_variance(const std::vector<Moments>& moments) {
@@ -70,7 +70,7 @@ Outcome render_until(ReferenceRenderer& renderer, ReferenceState& state, const R
     // Variances fall like one over the replicates, so this many would be needed.
     const double share_left = goal.error_share > 0 ? share / goal.error_share : 0;
     const double relative_left = goal.relative_error > 0 ? std::pow(relative / goal.relative_error, 2) : 0;
-    if (may_grow && static_cast<double>(replicates) * std::max(share_left, relative_left) > 2 * kFewReplicates)
+    if (may_grow && static_cast<double>(replicates) * std::max(share_left, relative_left) > kFewReplicates)
       return {false, share, relative};
   }
 }

@@ -37,7 +37,7 @@ struct ReferenceGoal {
   /// Root mean square of the pixels' relative standard errors at most this; 0 for no such goal.
   double relative_error = 0;
   std::int64_t most_replicates = 1 << 14;
-  /// Where about 64 replicates would not reach the goal, N grows eightfold and they start anew, up to this N; only then
+  /// Where 256 replicates would not reach the goal, N grows eightfold and they start anew, up to this N; only then
   /// are there more replicates. 0: N stays what it is.
   std::uint64_t most_samples = 0;
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <limits>
 
 #include "analysis/palette.h"
 #include "analysis/text_fit.h"
