@@ -57,6 +57,7 @@ std::vector<Reference> make_references(const Plan& plan, const Catalogue& catalo
 std::string run_hash(const Spec& spec, const Plan& plan) {
   std::string text = spec_hash(spec);
   for (const PlannedScene& scene : plan.scenes) text += "\n" + scene.source->fingerprint();
+  for (const std::string& fingerprint : plan.sampler_fingerprints) text += "\n" + fingerprint;
   return fmt::format("{:016x}", hash_text(text));
 }
 

@@ -9,7 +9,6 @@
 #include "core/error.h"
 #include "core/point_block.h"
 #include "experiments/interrupt.h"
-#include "experiments/measures_layout.h"
 #include "experiments/parallel.h"
 #include "experiments/progress.h"
 
@@ -37,7 +36,8 @@ std::vector<Task> tasks_of(const MeasuresPlan& plan) {
     const MeasuredPoints& points = plan.points[p];
     for (std::size_t first = 0; first < points.counts.size();) {
       const std::size_t end = points.sequence ? points.counts.size() : first + 1;
-      const auto lanes = static_cast<int>(std::clamp<std::uint64_t>(kPointsHeld / points.counts[end - 1], 1, kLanes));
+      const auto lanes =
+          static_cast<int>(std::clamp<std::uint64_t>(kPointsHeld / points.counts[end - 1].count, 1, kLanes));
       for (std::int64_t r = 0; r < points.replicates; r += lanes) {
         const auto replicates = static_cast<int>(std::min<std::int64_t>(lanes, points.replicates - r));
         tasks.push_back({p, first, end, r, replicates});
@@ -52,15 +52,16 @@ std::vector<Task> tasks_of(const MeasuresPlan& plan) {
 class Columns {
  public:
   Columns(Sampler& sampler, const MeasuredPoints& points, const Task& task)
-      : count_(points.counts[task.end_count - 1]),
-        values_(count_ * static_cast<std::size_t>(task.replicates) * dims()) {
-    sampler.prepare({count_, &kPair, points.key, 0, static_cast<std::uint32_t>(task.first_replicate), true});
+      : count_(points.counts[task.end_count - 1].count),
+        dims_(points.layout.dims()),
+        values_(count_ * static_cast<std::size_t>(task.replicates * dims_)) {
+    sampler.prepare({count_, &points.layout, points.key, 0, static_cast<std::uint32_t>(task.first_replicate), true});
     PointBlock block;
     for (std::uint64_t begin = 0; begin < count_ && !interrupted(); begin += kBlock) {
-      block.reset(kPair.dims(), static_cast<int>(std::min<std::uint64_t>(kBlock, count_ - begin)), true);
+      block.reset(dims_, static_cast<int>(std::min<std::uint64_t>(kBlock, count_ - begin)), true);
       sampler.fill(begin, block);
       for (int lane = 0; lane < task.replicates; ++lane) {
-        for (int d = 0; d < kPair.dims(); ++d) {
+        for (int d = 0; d < dims_; ++d) {
           double* to = values_.data() + at(lane, d) + begin;
           for (int s = 0; s < block.samples(); ++s) to[s] = block.coordinate(d, s, lane);
         }
@@ -70,25 +71,22 @@ class Columns {
   /// The first `count` points of a replicate.
   PointSet prefix(int lane, std::uint64_t count) const {
     std::vector<std::span<const double>> columns;
-    for (int d = 0; d < kPair.dims(); ++d) columns.emplace_back(values_.data() + at(lane, d), count);
+    for (int d = 0; d < dims_; ++d) columns.emplace_back(values_.data() + at(lane, d), count);
     return PointSet(std::move(columns));
   }
 
  private:
-  static std::size_t dims() { return static_cast<std::size_t>(kPair.dims()); }
-  std::size_t at(int lane, int dim) const {
-    return (static_cast<std::size_t>(lane) * dims() + static_cast<std::size_t>(dim)) * count_;
-  }
+  std::size_t at(int lane, int dim) const { return static_cast<std::size_t>(lane * dims_ + dim) * count_; }
 
   std::size_t count_;
+  int dims_;
   std::vector<double> values_;
 };
 
 /// Where the rows of each sampler's points begin.
 std::vector<std::size_t> first_rows(const MeasuresPlan& plan) {
   std::vector<std::size_t> rows = {0};
-  for (const MeasuredPoints& p : plan.points)
-    rows.push_back(rows.back() + p.counts.size() * static_cast<std::size_t>(p.replicates) * plan.measures.size());
+  for (const MeasuredPoints& p : plan.points) rows.push_back(rows.back() + p.rows());
   return rows;
 }
 
@@ -96,22 +94,27 @@ void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const T
              std::span<MeasuredValue> rows, Progress& progress) {
   const MeasuredPoints& points = plan.points[task.points];
   const Columns columns(*samplers.make(points.sampler), points, task);
+  std::size_t first = 0;  // row of the first replicate at this N
+  for (std::size_t n = 0; n < task.first_count; ++n)
+    first += points.counts[n].rows.size() * static_cast<std::size_t>(points.replicates);
   for (std::size_t n = task.first_count; n < task.end_count; ++n) {
+    const MeasuredCount& counted = points.counts[n];
     for (int lane = 0; lane < task.replicates && !interrupted(); ++lane) {
-      const PointSet set = columns.prefix(lane, points.counts[n]);
-      const auto replicate = static_cast<std::size_t>(task.first_replicate + lane);
-      const std::size_t row = n * static_cast<std::size_t>(points.replicates) + replicate;
-      for (std::size_t m = 0; m < plan.measures.size(); ++m)
-        rows[row * plan.measures.size() + m] = plan.measures[m]->measure(set);
-      progress.advance(static_cast<double>(points.counts[n]));
+      const PointSet set = columns.prefix(lane, counted.count);
+      auto row =
+          rows.begin() + static_cast<std::ptrdiff_t>(first + static_cast<std::size_t>(task.first_replicate + lane) *
+                                                                 counted.rows.size());
+      for (const std::size_t m : counted.measures) row = std::ranges::copy(plan.measures[m].values(set), row).out;
+      progress.advance(static_cast<double>(counted.count));
     }
+    first += counted.rows.size() * static_cast<std::size_t>(points.replicates);
   }
 }
 
 double points_in_all(const MeasuresPlan& plan) {
   double sum = 0;
   for (const MeasuredPoints& p : plan.points) {
-    for (const std::uint64_t count : p.counts) sum += static_cast<double>(count) * static_cast<double>(p.replicates);
+    for (const MeasuredCount& n : p.counts) sum += static_cast<double>(n.count) * static_cast<double>(p.replicates);
   }
   return sum;
 }
@@ -124,7 +127,7 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
   if (measured.empty()) return measured;
   std::vector<Task> tasks = tasks_of(plan);
   const auto large = std::stable_partition(tasks.begin(), tasks.end(), [&](const Task& task) {
-    return plan.points[task.points].counts[task.end_count - 1] <= kPointsHeld;
+    return plan.points[task.points].counts[task.end_count - 1].count <= kPointsHeld;
   });
   const std::vector<std::size_t> rows = first_rows(plan);
   Progress progress(label, points_in_all(plan), quiet);
@@ -154,10 +157,10 @@ void write_discrepancy_csv(const std::filesystem::path& path, const MeasuresPlan
   CsvWriter csv({"sampler", "dims", "count", "replicate", "measure", "value", "lower", "upper", "method"});
   auto row = measured.begin();
   for (const MeasuredPoints& p : plan.points) {
-    for (const std::uint64_t count : p.counts) {
+    for (const MeasuredCount& n : p.counts) {
       for (std::int64_t r = 0; r < p.replicates; ++r) {
-        for (const MeasureInfo* info : plan.measures) {
-          csv.row(p.sampler, kPair.dims(), count, r, info->name, row->value, row->lower, row->upper, row->method);
+        for (const std::string& name : n.rows) {
+          csv.row(p.sampler, p.layout.dims(), n.count, r, name, row->value, row->lower, row->upper, row->method);
           ++row;
         }
       }

@@ -242,6 +242,9 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   std::vector<std::unique_ptr<Sampler>> samplers;
   for (const auto& name : spec.samplers)
     samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));
+  for (const auto& sampler : samplers) {
+    if (!sampler->info().fingerprint.empty()) plan.sampler_fingerprints.push_back(sampler->info().fingerprint);
+  }
 
   LeftOutCounts left_out;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
@@ -266,8 +269,9 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
           pass.randomised = info.randomised;
           pass.allocation = allocation;
           pass.samples = legal_counts(spec, scene.estimators[e], *sampler, layout, left_out);
-          pass.replicates = info.randomised ? spec.replicates : 1;
+          pass.replicates = info.replicates_of(spec.replicates);
           pass.key = stream_key(spec.seed, info.name, "run");
+          for (const std::string& caveat : info.caveats) plan.skips.push_back(fmt::format("{}: {}", info.name, caveat));
           if (pass.samples.empty()) continue;
           const std::size_t index = pass_for(plan, pass);
           auto& sharing = plan.passes[index].estimators;

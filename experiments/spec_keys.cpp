@@ -151,20 +151,21 @@ void set_precision(Spec& spec, const Key& key, const SpecValue& value) {
 // They come out in the catalogue's order, so that the same measures are the same experiment.
 void set_measures(Spec& spec, const Key& key, const SpecValue& value) {
   if (value.items.empty()) refuse(key, value, value.place, "found an empty list");
-  const std::vector<std::string> known = measure_names();
   std::vector<std::string> list;
   if (value.is_list || value.items[0].text != "none") {
     for (const SpecItem& item : value.items) {
       const std::string& name = text(key, value, item);
       if (name == "none") refuse(key, value, item.place, "'none' stands in a list; it stands alone, as a text");
-      if (std::find(known.begin(), known.end(), name) == known.end())
-        refuse(key, value, item.place, fmt::format("there is no measure '{}'{}", name, did_you_mean(name, known)));
+      try {
+        make_measure(name);
+      } catch (const Error& error) {
+        refuse(key, value, item.place, error.what());
+      }
       append_unique(key, value, item, list, name);
     }
   }
-  spec.measures.clear();
-  for (const std::string& name : known)
-    if (std::find(list.begin(), list.end(), name) != list.end()) spec.measures.push_back(name);
+  std::ranges::stable_sort(list, {}, measure_rank);
+  spec.measures = std::move(list);
 }
 
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its

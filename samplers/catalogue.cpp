@@ -14,7 +14,8 @@
 namespace halfslope {
 
 // The menu. To add a sampler: derive from Sampler in a file of its own, say in info() what it is, and add its maker
-// here (an embedder calls add() instead, and touches nothing of ours).
+// here (an embedder calls add() instead, and touches nothing of ours). Samplers that are named with an argument, such
+// as a path, are a family.
 SamplerCatalogue SamplerCatalogue::built_in() {
   SamplerCatalogue catalogue;
   catalogue.add(make_independent);
@@ -33,20 +34,30 @@ SamplerCatalogue SamplerCatalogue::built_in() {
 void SamplerCatalogue::add(Make make) {
   SamplerInfo info = make()->info();
   assert_equal(has(info.name), false, "a sampler of that name");
-  entries_.push_back({std::move(info), std::move(make)});
+  entries_.push_back({std::move(info), [make](const std::string&, const SamplerCatalogue&) { return make(); }, false});
 }
 
-bool SamplerCatalogue::has(const std::string& name) const {
-  for (const Entry& entry : entries_) {
-    if (entry.info.name == name) return true;
-  }
-  return false;
+void SamplerCatalogue::add_family(SamplerInfo info, MakeOne make) {
+  assert_equal(has(info.name), false, "samplers of that prefix");
+  entries_.push_back({std::move(info), std::move(make), true});
 }
+
+const SamplerCatalogue::Entry* SamplerCatalogue::find(const std::string& name) const {
+  const std::size_t colon = name.find(':');
+  for (const Entry& entry : entries_) {
+    // A family is found by its prefix, colon included.
+    const bool found =
+        entry.family ? colon != std::string::npos && entry.info.name.compare(0, colon + 1, name, 0, colon + 1) == 0
+                     : entry.info.name == name;
+    if (found) return &entry;
+  }
+  return nullptr;
+}
+
+bool SamplerCatalogue::has(const std::string& name) const { return find(name) != nullptr; }
 
 std::unique_ptr<Sampler> SamplerCatalogue::make(const std::string& name) const {
-  for (const Entry& entry : entries_) {
-    if (entry.info.name == name) return entry.make();
-  }
+  if (const Entry* entry = find(name)) return entry->make(name.substr(name.find(':') + 1), *this);
   fail(ExitCode::kBadInput, "there is no sampler '{}'{} (`halfslope list samplers` names them all)", name,
        did_you_mean(name, names()));
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/layout.h"
 #include "core/point_block.h"
@@ -24,6 +25,15 @@ struct SamplerInfo {
   std::uint64_t max_count = std::uint64_t{1} << 31;
   /// The rate that theory gives for any square-integrable integrand, where there is one.
   std::optional<double> rate = std::nullopt;
+  /// The replicates there are, where they cannot be made at will: such a sampler always runs all of them.
+  std::optional<std::int64_t> replicates = std::nullopt;
+  /// What the points depend on beside the name, such as a file's contents; part of what a run is.
+  std::string fingerprint = {};
+  /// What every user of these points should know before reading a number: lines for --dry-run.
+  std::vector<std::string> caveats = {};
+
+  /// How many replicates it runs where `asked` are asked for.
+  std::int64_t replicates_of(std::int64_t asked) const { return randomised ? replicates.value_or(asked) : 1; }
 };
 
 /// The nearest legal counts around an illegal one.

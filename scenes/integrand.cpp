@@ -1,15 +1,14 @@
 #include "scenes/integrand.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 #include <string_view>
 
 #include "core/error.h"
 #include "core/kernel_library.h"
+#include "core/parameters.h"
 #include "scenes/pairs.h"
 
 namespace halfslope {
@@ -57,51 +56,16 @@ IntegrandKernel find_kernel(const std::string& name) {
   fail(ExitCode::kIo, "the kernel library has no integrand '{}'; it is of another version", name);
 }
 
-// A finite decimal number, all of the text, whatever the locale.
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0;
-  const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = status == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
+using Text = std::optional<std::string_view>;  // of the parameters, where there are any
 
-// The value of each parameter in "n=1000,alpha=0.05"; every one of `names` must be given once, and no other.
-std::map<std::string, double> parse_parameters(const std::string& scene, std::string_view text,
-                                               const std::vector<std::string>& names) {
-  std::map<std::string, double> values;
-  if (text.ends_with(',')) fail(ExitCode::kBadInput, "scene '{}': nothing stands after the last ','", scene);
-  while (!text.empty()) {
-    const std::string item(text.substr(0, text.find(',')));
-    text.remove_prefix(std::min(text.size(), item.size() + 1));
-    const auto equals = item.find('=');
-    const std::string name = item.substr(0, equals);
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      fail(ExitCode::kBadInput, "scene '{}': there is no parameter '{}'{}; allowed: {}", scene, name,
-           did_you_mean(name, names), fmt::join(names, ", "));
-    }
-    const std::string number = equals == std::string::npos ? "" : item.substr(equals + 1);
-    const auto value = parse_number(number);
-    if (!value) {
-      fail(ExitCode::kBadInput, "scene '{}': parameter '{}' must be a number, found '{}'", scene, name, number);
-    }
-    if (!values.emplace(name, *value).second)
-      fail(ExitCode::kBadInput, "scene '{}': parameter '{}' stands twice", scene, name);
-  }
-  for (const auto& name : names) {
-    if (!values.contains(name)) {
-      fail(ExitCode::kBadInput, "scene '{}': parameter '{}' is missing; it takes {}", scene, name,
-           fmt::join(names, ", "));
-    }
-  }
-  return values;
-}
+std::string subject(const std::string& scene) { return fmt::format("scene '{}'", scene); }
 
 const Technique kMean = {"mean", {{2}}};
 const std::vector<Technique> kLightAndBsdf = {{"light", {{1}}}, {"bsdf", {{1}}}};
 
-std::unique_ptr<IntegralSource> make_cap(const std::string& scene, std::string_view text) {
-  const auto values = parse_parameters(scene, text, {"n", "alpha"});
-  const double n = values.at("n"), alpha = values.at("alpha");
+std::unique_ptr<IntegralSource> make_cap(const std::string& scene, Text text) {
+  const Parameters values = parse_parameters(subject(scene), text, std::vector<Parameter>{{"n"}, {"alpha"}});
+  const double n = values.number("n"), alpha = values.number("alpha");
   if (n < 0) fail(ExitCode::kBadInput, "scene '{}': n must be at least 0, found {}", scene, n);
   if (!(alpha > 0 && alpha <= std::numbers::pi / 2)) {
     fail(ExitCode::kBadInput, "scene '{}': alpha is a half-angle in radians, in (0, pi/2]; found {}", scene, alpha);
@@ -113,17 +77,13 @@ std::unique_ptr<IntegralSource> make_cap(const std::string& scene, std::string_v
 
 constexpr int kMostDims = 6;
 
-int parse_dims(const std::string& scene, std::string_view text) {
-  const double d = parse_parameters(scene, text, {"d"}).at("d");
-  if (!(d >= 1 && d <= kMostDims && d == std::trunc(d))) {
-    fail(ExitCode::kBadInput, "scene '{}': d must be a whole number from 1 to {}, found {}", scene, kMostDims, d);
-  }
-  return static_cast<int>(d);
+int parse_dims(const std::string& scene, Text text) {
+  return parse_parameters(subject(scene), text, std::vector<Parameter>{{"d"}}).whole(subject(scene), "d", 1, kMostDims);
 }
 
 // aᵢ = 7.03 (i − ½)/d² to four decimals, so that Σ aᵢ = 3.515 in every dimension; uᵢ are fixed centres, no binary
 // fractions but the first. A factor's integral is √π/(2a) (erf(a (1 − u)) + erf(a u)).
-std::unique_ptr<IntegralSource> make_genz_gaussian(const std::string& scene, std::string_view text) {
+std::unique_ptr<IntegralSource> make_genz_gaussian(const std::string& scene, Text text) {
   constexpr double kCentres[kMostDims] = {0.5, 0.2326, 0.6652, 0.3979, 0.8305, 0.5631};
   const int dims = parse_dims(scene, text);
   std::vector<double> parameters;
@@ -167,7 +127,7 @@ double halfspace_volume(std::span<const double> weights, double c) {
 
 // Weights one over the root of a prime, so that the plane is in general position; signs that lead it through the
 // middle of the cube.
-std::unique_ptr<IntegralSource> make_halfspace(const std::string& scene, std::string_view text) {
+std::unique_ptr<IntegralSource> make_halfspace(const std::string& scene, Text text) {
   const int dims = parse_dims(scene, text);
   const double r2 = 1 / std::sqrt(2.0), r3 = 1 / std::sqrt(3.0), r5 = 1 / std::sqrt(5.0), r7 = 1 / std::sqrt(7.0),
                r11 = 1 / std::sqrt(11.0);
@@ -181,16 +141,13 @@ std::unique_ptr<IntegralSource> make_halfspace(const std::string& scene, std::st
 
 struct Entry {
   IntegrandInfo info;
-  std::function<std::unique_ptr<IntegralSource>(const std::string& scene, std::string_view parameters)> make;
+  std::function<std::unique_ptr<IntegralSource>(const std::string& scene, Text parameters)> make;
 };
 
 // A scene without parameters.
 auto plain(const char* kernel, std::vector<Technique> techniques, double exact) {
-  return [=](const std::string& scene, std::string_view text) {
-    if (!text.empty()) {
-      fail(ExitCode::kBadInput, "scene '{}': it takes no parameters; write '{}'", scene,
-           scene.substr(0, scene.find(':')));
-    }
+  return [=](const std::string& scene, Text text) {
+    parse_parameters(subject(scene), text, {});
     return std::make_unique<AnalyticSource>(kernel, std::vector<double>{}, techniques, exact, scene);
   };
 }
@@ -249,13 +206,9 @@ std::vector<IntegrandInfo> analytic_scenes() {
 }
 
 std::unique_ptr<IntegralSource> make_analytic_scene(const std::string& name) {
-  const auto colon = name.find(':');
+  const SplitName split = split_name(name);
   for (const Entry& entry : entries()) {
-    if (entry.info.name == name.substr(0, colon)) {
-      if (colon + 1 == name.size()) fail(ExitCode::kBadInput, "scene '{}': nothing stands after ':'", name);
-      return entry.make(name,
-                        colon == std::string::npos ? std::string_view() : std::string_view(name).substr(colon + 1));
-    }
+    if (entry.info.name == split.head) return entry.make(name, split.parameters);
   }
   return nullptr;
 }

@@ -183,6 +183,12 @@ TEST_F(Discrepancy, TheSummaryAndTheDryRunTellOfIt) {
   EXPECT_THAT(read_file(folder_ / "out/manifest.json"), HasSubstr("\"measures\": ["));
 }
 
+std::vector<std::uint64_t> counts_of(const MeasuredPoints& points) {
+  std::vector<std::uint64_t> counts;
+  for (const MeasuredCount& n : points.counts) counts.push_back(n.count);
+  return counts;
+}
+
 // 2^20 points are measured in a moment, a billion would take the machine: they are left out, and it is said.
 TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   const Catalogue catalogue = with_diagonals();
@@ -200,14 +206,14 @@ TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   EXPECT_THAT(left_out, Contains("discrepancy: replicates 4096 to 9999 left out: the first 4096 are measured"));
   ASSERT_EQ(plan.points.size(), 3u);
   EXPECT_THAT(plan.points[0].counts, IsEmpty());
-  EXPECT_THAT(plan.points[1].counts, ElementsAre(2, 4, 1 << 20));
+  EXPECT_THAT(counts_of(plan.points[1]), ElementsAre(2, 4, 1 << 20));
   EXPECT_EQ(plan.points[1].replicates, 1);
-  EXPECT_THAT(plan.points[2].counts, ElementsAre(1, 2, 3, 4, 1 << 20));
+  EXPECT_THAT(counts_of(plan.points[2]), ElementsAre(1, 2, 3, 4, 1 << 20));
   EXPECT_EQ(plan.points[2].replicates, 4096);
   EXPECT_EQ(plan.rows(), 3u + 5 * 4096);
 
   const Plan whole = make_plan(spec_of(keys), catalogue);
-  EXPECT_THAT(whole.measures.points[0].counts, ElementsAre(2, 4, 8, 16));
+  EXPECT_THAT(counts_of(whole.measures.points[0]), ElementsAre(2, 4, 8, 16));
   EXPECT_THAT(whole.left_out, IsEmpty());
   keys["samples"] = "1:16";
   const Plan ranged = make_plan(spec_of(keys), catalogue);

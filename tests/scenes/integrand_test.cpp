@@ -145,7 +145,7 @@ TEST(AnalyticScenes, NamesAndParameters) {
   for (const char* alpha : {"0", "-1", "1.6"}) {
     EXPECT_THAT(error_of("aligned-phong-cap:n=1,alpha=" + std::string(alpha)), HasSubstr("in (0, pi/2]"));
   }
-  EXPECT_EQ(error_of("quarterdisk:n=1"), "scene 'quarterdisk:n=1': it takes no parameters; write 'quarterdisk'");
+  EXPECT_EQ(error_of("quarterdisk:n=1"), "scene 'quarterdisk:n=1': it takes no parameters");
   EXPECT_EQ(error_of("stepx:"), "scene 'stepx:': nothing stands after ':'");
   EXPECT_EQ(error_of("halfspace:d=2,"), "scene 'halfspace:d=2,': nothing stands after the last ','");
   for (const std::string scene : {"halfspace", "genz-gaussian"}) {
