@@ -113,6 +113,36 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   points_app->add_option("--seed", points.seed, "of the random numbers")->capture_default_str()->type_name("S");
   points_app->add_option("--precision", points.precision, "f32 or f64")->capture_default_str()->type_name("P");
 
+  MeasureArguments measure;
+  std::vector<std::string> measured_samplers;
+  CLI::App* measure_app =
+      app.add_subcommand("measure", "measure points: discrepancies, distances, spectra, as CSV or JSON");
+  measure_app->add_option("--sampler,--samplers", measured_samplers, "one or several, see `halfslope list samplers`")
+      ->type_name("NAME");
+  measure_app->add_option("--points", measure.files, "one or several files of points, a line each; sets are replicates")
+      ->type_name("FILE");
+  measure_app->add_option("--count", measure.counts, "N: 1024, 16:1024 for powers of two, or a list (of files: all)")
+      ->type_name("N");
+  measure_app->add_option("--dims", measure.dims, "dimensions (default: 2, or the files' columns)")->type_name("D");
+  measure_app
+      ->add_option("--measures", measure.measures,
+                   "see `halfslope list measures`; or all, for those that are one number")
+      ->capture_default_str()
+      ->type_name("NAME,...");
+  measure_app
+      ->add_option("--replicates", measure.replicates,
+                   "randomisations (default 1, with --summary 64; of files: the sets)")
+      ->type_name("R");
+  measure_app->add_option("--seed", measure.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  CLI::Option* wrap = measure_app->add_flag("--wrap", measure.wrap, "take points outside [0,1) modulo 1");
+  measure_app->add_flag("--clamp", measure.clamp, "move points outside [0,1) to its nearest end")->excludes(wrap);
+  measure_app->add_flag("--summary", measure.summary, "mean over replicates and its 95 % interval instead of each");
+  measure_app->add_option("--exr", measure.exr, "write the mean spectrum as an image too")->type_name("FILE");
+  measure_app->add_flag("--json", measure.json, "as JSON");
+  measure_app->add_option("--threads", measure.threads, "threads; the results do not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 4096));
+  measure_app->add_flag("--quiet", measure.quiet, "no progress, and not what is left out");
+
   RenderArguments render;
   CLI::App* render_app = app.add_subcommand("render", "render one replicate to an EXR image");
   render_app->add_option("--scene", render.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
@@ -207,6 +237,10 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
     return list_command(list, catalogue);
   }
   if (points_app->parsed()) return points_command(points, catalogue);
+  if (measure_app->parsed()) {
+    for (const std::string& name : measured_samplers) measure.samplers += (measure.samplers.empty() ? "" : ",") + name;
+    return measure_command(measure, catalogue);
+  }
   if (render_app->parsed()) return render_command(render, catalogue);
   if (reference_app->parsed()) return reference_command(reference, catalogue);
   if (figure_app->parsed()) return figure_command(figure, catalogue);

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "experiments/catalogue.h"
 #include "experiments/spec.h"
@@ -35,6 +36,21 @@ struct PointsArguments {
   std::string precision = "f64";
 };
 int points_command(const PointsArguments& arguments, const Catalogue& catalogue);
+
+struct MeasureArguments {
+  std::string samplers;            ///< names, separated by commas
+  std::vector<std::string> files;  ///< of points
+  bool wrap = false, clamp = false;
+  std::string counts;       ///< as --samples of `run`; empty: all points of the files
+  std::optional<int> dims;  ///< default: the files' columns, else 2
+  std::string measures = "star,l2-star";
+  std::optional<std::int64_t> replicates;  ///< default: 1, with `summary` 64
+  std::uint64_t seed = 1;
+  std::string exr;
+  int threads = 0;
+  bool summary = false, json = false, quiet = false;
+};
+int measure_command(const MeasureArguments& arguments, const Catalogue& catalogue);
 
 struct RenderArguments {
   std::string scene, estimator, sampler = "halton-owen", resolution, precision = "f32", out;

@@ -16,10 +16,10 @@ namespace halfslope {
 namespace {
 
 // Replicates travel in lanes, and all lanes of small sets are kept; of large ones fewer, so that a thread holds no more
-// than so many points, or one set.
-constexpr std::uint64_t kPointsHeld = std::uint64_t{1} << 18;
+// than so many coordinates, or one set.
+constexpr std::uint64_t kHeld = std::uint64_t{1} << 19;
 constexpr int kBlock = 256;
-// Threads at work on sets above kPointsHeld, each of which takes up to 200 MB.
+// Threads at work on sets above kHeld, each of which takes up to 200 MB.
 constexpr int kLargeAtOnce = 4;
 
 /// Some replicates of a sampler's points at one N; of a sequence, at every N.
@@ -30,14 +30,17 @@ struct Task {
   int replicates;
 };
 
+std::uint64_t coordinates(const MeasuredPoints& points, std::size_t n) {
+  return points.counts[n].count * static_cast<std::uint64_t>(points.layout.dims());
+}
+
 std::vector<Task> tasks_of(const MeasuresPlan& plan) {
   std::vector<Task> tasks;
   for (std::size_t p = 0; p < plan.points.size(); ++p) {
     const MeasuredPoints& points = plan.points[p];
     for (std::size_t first = 0; first < points.counts.size();) {
       const std::size_t end = points.sequence ? points.counts.size() : first + 1;
-      const auto lanes =
-          static_cast<int>(std::clamp<std::uint64_t>(kPointsHeld / points.counts[end - 1].count, 1, kLanes));
+      const auto lanes = static_cast<int>(std::clamp<std::uint64_t>(kHeld / coordinates(points, end - 1), 1, kLanes));
       for (std::int64_t r = 0; r < points.replicates; r += lanes) {
         const auto replicates = static_cast<int>(std::min<std::int64_t>(lanes, points.replicates - r));
         tasks.push_back({p, first, end, r, replicates});
@@ -127,7 +130,7 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
   if (measured.empty()) return measured;
   std::vector<Task> tasks = tasks_of(plan);
   const auto large = std::stable_partition(tasks.begin(), tasks.end(), [&](const Task& task) {
-    return plan.points[task.points].counts[task.end_count - 1].count <= kPointsHeld;
+    return coordinates(plan.points[task.points], task.end_count - 1) <= kHeld;
   });
   const std::vector<std::size_t> rows = first_rows(plan);
   Progress progress(label, points_in_all(plan), quiet);
@@ -151,22 +154,36 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
   return measured;
 }
 
-void write_discrepancy_csv(const std::filesystem::path& path, const MeasuresPlan& plan, const Measurements& measured) {
-  if (plan.measures.empty()) return;
-  AtomicFile file(path);
-  CsvWriter csv({"sampler", "dims", "count", "replicate", "measure", "value", "lower", "upper", "method"});
-  auto row = measured.begin();
+void visit_measurements(const MeasuresPlan& plan, const Measurements& measured, const VisitMeasurement& visit) {
+  auto value = measured.begin();
   for (const MeasuredPoints& p : plan.points) {
     for (const MeasuredCount& n : p.counts) {
       for (std::int64_t r = 0; r < p.replicates; ++r) {
-        for (const std::string& name : n.rows) {
-          csv.row(p.sampler, p.layout.dims(), n.count, r, name, row->value, row->lower, row->upper, row->method);
-          ++row;
-        }
+        for (const std::string& name : n.rows) visit(p, n.count, r, name, *value++);
       }
-      file.write(csv.take_text());
     }
   }
+}
+
+std::span<const std::string> discrepancy_columns() {
+  static const std::vector<std::string> columns = {"sampler", "dims",  "count", "replicate", "measure",
+                                                   "value",   "lower", "upper", "method"};
+  return columns;
+}
+
+void write_discrepancy_csv(const std::filesystem::path& path, const MeasuresPlan& plan, const Measurements& measured) {
+  if (plan.measures.empty()) return;
+  constexpr int kRowsAtOnce = 4096;
+  AtomicFile file(path);
+  CsvWriter csv(discrepancy_columns());
+  int rows = 0;
+  visit_measurements(plan, measured,
+                     [&](const MeasuredPoints& p, std::uint64_t count, std::int64_t replicate, const std::string& name,
+                         const MeasuredValue& value) {
+                       csv.row(p.sampler, p.layout.dims(), count, replicate, name, value.value, value.lower,
+                               value.upper, value.method);
+                       if (++rows % kRowsAtOnce == 0) file.write(csv.take_text());
+                     });
   file.write(csv.take_text());  // the header alone where there are no rows
   file.commit();
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "analysis/intervals.h"
 #include "experiments/measures.h"
 #include "experiments/text_table.h"
 
@@ -13,6 +12,32 @@ namespace {
 constexpr std::size_t kMostColumns = 6;
 
 }  // namespace
+
+std::vector<MeasuredMean> measured_means(const MeasuresPlan& plan, const Measurements& measured) {
+  std::vector<MeasuredMean> means;
+  std::size_t first = 0;  // of the N's rows
+  for (const MeasuredPoints& p : plan.points) {
+    const auto replicates = static_cast<std::size_t>(p.replicates);
+    for (const MeasuredCount& n : p.counts) {
+      for (std::size_t k = 0; k < n.rows.size(); ++k) {
+        Moments value, lower, upper;
+        for (std::size_t r = 0; r < replicates; ++r) {
+          const MeasuredValue& one = measured[first + r * n.rows.size() + k];
+          value.add(one.value);
+          lower.add(one.lower);
+          upper.add(one.upper);
+        }
+        const std::string method(measured[first + k].method);
+        const auto below = t_interval(lower), above = t_interval(upper);
+        means.push_back({&p, n.count, n.rows[k], value.mean, below ? below->lo : lower.mean,
+                         above ? above->hi : upper.mean,
+                         replicates > 1 ? "mean, 95 % t interval; each " + method : method});
+      }
+      first += n.rows.size() * replicates;
+    }
+  }
+  return means;
+}
 
 std::string measures_summary(const MeasuresPlan& plan, const Measurements& measured) {
   if (measured.empty()) return "";
@@ -30,28 +55,21 @@ std::string measures_summary(const MeasuresPlan& plan, const Measurements& measu
     rows[0].push_back(name);
     rows[0].push_back("95 %");
   }
+  const std::vector<MeasuredMean> means = measured_means(plan, measured);
   int dims = 0;
-  std::size_t end = 0;  // of the sampler's rows, the last of which are those of its largest N
   for (const MeasuredPoints& p : plan.points) {
     if (p.counts.empty()) continue;
     dims = p.layout.dims();
-    end += p.rows();
-    const auto replicates = static_cast<std::size_t>(p.replicates);
-    const MeasuredCount& largest = p.counts.back();
-    std::vector<std::string> row = {p.sampler, std::to_string(largest.count), std::to_string(replicates)};
+    const std::uint64_t largest = p.counts.back().count;
+    std::vector<std::string> row = {p.sampler, std::to_string(largest), std::to_string(p.replicates)};
     for (const std::string& name : names) {
-      const auto found = std::find(largest.rows.begin(), largest.rows.end(), name);
-      if (found == largest.rows.end()) {
-        row.insert(row.end(), {"", ""});
-        continue;
-      }
-      const auto m = static_cast<std::size_t>(found - largest.rows.begin());
-      Moments moments;
-      for (std::size_t r = 0; r < replicates; ++r)
-        moments.add(measured[end - (replicates - r) * largest.rows.size() + m].value);
-      const auto interval = replicates > 1 ? t_interval(moments) : std::nullopt;
-      row.push_back(fmt::format("{:.3g}", moments.mean));
-      row.push_back(interval ? fmt::format("[{:.3g}, {:.3g}]", interval->lo, interval->hi) : "");
+      const auto mean = std::find_if(means.begin(), means.end(), [&](const MeasuredMean& m) {
+        return m.points == &p && m.count == largest && m.name == name;
+      });
+      const bool found = mean != means.end();
+      row.push_back(found ? fmt::format("{:.3g}", mean->value) : "");
+      row.push_back(found && mean->upper > mean->lower ? fmt::format("[{:.3g}, {:.3g}]", mean->lower, mean->upper)
+                                                       : "");
     }
     rows.push_back(std::move(row));
   }

@@ -37,8 +37,8 @@ std::vector<std::string> split_list(std::string_view text) {
 
 }  // namespace
 
-void apply_flag(Spec& spec, std::string_view key, std::string_view value) {
-  const std::string place = fmt::format("--{}", key);
+void apply_flag(Spec& spec, std::string_view key, std::string_view value, std::string_view shown_as) {
+  const std::string place = fmt::format("--{}", shown_as.empty() ? key : shown_as);
   const std::span<const std::string> known = spec_key_names();
   if (std::find(known.begin(), known.end(), key) == known.end())
     fail(ExitCode::kUsage, "{} is not known{}", place, spec_key_hint(key));

@@ -199,8 +199,9 @@ TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   spec.replicates = 10000;
   std::vector<std::string> left_out;
   const MeasuresPlan plan = plan_measures(spec, catalogue.samplers, left_out);
-  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'line' has no pairs of dimensions: left out"));
-  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'diagonal' has no pairs at N = 1, 3: left out"));
+  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'line' has at most 1 dimension, not 2: left out"));
+  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'diagonal' cannot make N = 1, 3 points in 2 dimensions: left "
+                                 "out"));
   EXPECT_THAT(left_out, Contains("discrepancy: N = 2097152, 1099511627776: left out, since at most 1048576 points are "
                                  "measured"));
   EXPECT_THAT(left_out, Contains("discrepancy: replicates 4096 to 9999 left out: the first 4096 are measured"));
@@ -218,7 +219,7 @@ TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   keys["samples"] = "1:16";
   const Plan ranged = make_plan(spec_of(keys), catalogue);
   for (const auto& lines : {ranged.left_out, ranged.skips})
-    EXPECT_THAT(lines, Contains("discrepancy: sampler 'diagonal' has no pairs at N = 1: left out"));
+    EXPECT_THAT(lines, Contains("discrepancy: sampler 'diagonal' cannot make N = 1 points in 2 dimensions: left out"));
   keys.erase("measures");
   const Plan none = make_plan(spec_of(keys), catalogue);
   EXPECT_EQ(none.measures.rows(), 0u);
