@@ -2,13 +2,18 @@
 
 #include "core/assertion.h"
 #include "core/error.h"
+#include "samplers/antithetic.h"
 #include "samplers/halton.h"
 #include "samplers/halton_owen.h"
 #include "samplers/hammersley.h"
 #include "samplers/hammersley_owen.h"
 #include "samplers/independent.h"
 #include "samplers/jittered.h"
+#include "samplers/kronecker.h"
+#include "samplers/lattice.h"
 #include "samplers/n_rooks.h"
+#include "samplers/orthogonal_array.h"
+#include "samplers/regular.h"
 #include "samplers/stratified.h"
 
 namespace halfslope {
@@ -19,15 +24,21 @@ namespace halfslope {
 SamplerCatalogue SamplerCatalogue::built_in() {
   SamplerCatalogue catalogue;
   catalogue.add(make_independent);
+  catalogue.add(make_antithetic);
+  catalogue.add(make_regular);
   catalogue.add(make_stratified);
   catalogue.add(make_jittered);
   catalogue.add(make_n_rooks);
+  catalogue.add(make_orthogonal_array);
   catalogue.add(make_halton);
   catalogue.add(make_halton_cp);
   catalogue.add(make_halton_owen);
   catalogue.add(make_hammersley);
   catalogue.add(make_hammersley_cp);
   catalogue.add(make_hammersley_owen);
+  catalogue.add(make_lattice);
+  catalogue.add(make_lattice_tent);
+  catalogue.add(make_kronecker);
   return catalogue;
 }
 

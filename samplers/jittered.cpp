@@ -36,13 +36,8 @@ class Jittered final : public Sampler {
   }
 
   std::optional<LegalNeighbours> illegal(std::uint64_t count, const Layout& layout) const override {
-    const int dims = layout.dims();
-    if (count == 0 || dims == 0) return Sampler::illegal(count, layout);
-    const std::uint64_t most = info().max_count;
-    const std::uint64_t side = grid_side(std::min(count, most), dims), below = cells(side, dims);
-    if (below == count) return std::nullopt;
-    if (!fits(side + 1, dims, most)) return LegalNeighbours{below, std::nullopt};
-    return LegalNeighbours{below, cells(side + 1, dims)};
+    if (count == 0 || layout.dims() == 0) return Sampler::illegal(count, layout);
+    return illegal_grid(count, layout.dims(), info().max_count);
   }
 
   void prepare(const PointRequest& request) override {
@@ -89,6 +84,13 @@ std::uint64_t grid_side(std::uint64_t count, int dims) {
     if (fits(side | bit, dims, count)) side |= bit;
   }
   return side;
+}
+
+std::optional<LegalNeighbours> illegal_grid(std::uint64_t count, int dims, std::uint64_t most) {
+  const std::uint64_t side = grid_side(std::min(count, most), dims), below = cells(side, dims);
+  if (below == count) return std::nullopt;
+  if (!fits(side + 1, dims, most)) return LegalNeighbours{below, std::nullopt};
+  return LegalNeighbours{below, cells(side + 1, dims)};
 }
 
 std::unique_ptr<Sampler> make_jittered() { return std::make_unique<Jittered>(); }
