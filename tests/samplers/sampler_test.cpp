@@ -280,7 +280,8 @@ TEST_P(EverySampler, WordsAreTheSameOnEveryIsa) {
   }
 }
 
-/// The fewest points of kLayout's 8 dimensions: one, but for those that come in pairs, and for p² of an array that has p
+/// The fewest points of kLayout's 8 dimensions: one, but for those that come in pairs, and for p² of an array that has
+/// p
 /// + 1 columns.
 std::uint64_t least_count(const std::string& name) {
   if (name == "antithetic") return 2;
