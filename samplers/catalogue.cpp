@@ -3,6 +3,7 @@
 #include "core/assertion.h"
 #include "core/error.h"
 #include "samplers/antithetic.h"
+#include "samplers/file_points.h"
 #include "samplers/halton.h"
 #include "samplers/halton_owen.h"
 #include "samplers/hammersley.h"
@@ -39,6 +40,7 @@ SamplerCatalogue SamplerCatalogue::built_in() {
   catalogue.add(make_lattice);
   catalogue.add(make_lattice_tent);
   catalogue.add(make_kronecker);
+  add_file_points(catalogue);
   return catalogue;
 }
 
