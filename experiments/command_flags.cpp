@@ -1,5 +1,7 @@
 #include "experiments/command_flags.h"
 
+#include "samplers/file_points.h"
+
 namespace halfslope {
 
 Catalogue::Resolution parse_resolution(const std::string& text) {
@@ -19,6 +21,17 @@ std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const st
                                             const Catalogue::Resolution& resolution) {
   if (scene.ends_with(".xml")) return catalogue.make_scene(scene, resolution);
   return flag("--scene", [&] { return catalogue.make_scene(scene, resolution); });
+}
+
+std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::string& sampler, const char* flag_name) {
+  const auto make = [&] { return catalogue.samplers.make(sampler); };
+  return point_file_of(sampler).empty() ? flag(flag_name, make) : make();
+}
+
+void check_replicate(const SamplerInfo& sampler, std::uint32_t replicate) {
+  if (!sampler.replicates || replicate < *sampler.replicates) return;
+  fail(ExitCode::kUsage, "--replicate: sampler '{}' has {} replicate{}, from 0 on, found {}", sampler.name,
+       *sampler.replicates, *sampler.replicates == 1 ? "" : "s", replicate);
 }
 
 }  // namespace halfslope

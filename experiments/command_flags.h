@@ -32,4 +32,10 @@ Precision parse_precision(const std::string& text);
 std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const std::string& scene,
                                             const Catalogue::Resolution& resolution);
 
+/// The sampler of a flag, which `flag_name` names: likewise.
+std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::string& sampler, const char* flag_name);
+
+/// Error(kUsage) for a --replicate that a sampler with so many replicates does not have.
+void check_replicate(const SamplerInfo& sampler, std::uint32_t replicate);
+
 }  // namespace halfslope

@@ -30,7 +30,8 @@ constexpr int kDone = static_cast<int>(ExitCode::kDone);
 int points_command(const PointsArguments& a, const Catalogue& catalogue) {
   const Precision precision = parse_precision(a.precision);
   if (a.dims < 1) fail(ExitCode::kUsage, "--dims: at least 1, found {}", a.dims);
-  const auto sampler = flag("--sampler", [&] { return catalogue.samplers.make(a.sampler); });
+  const auto sampler = make_sampler(catalogue, a.sampler, "--sampler");
+  check_replicate(sampler->info(), a.replicate);
   if (a.dims > sampler->info().max_dims) {
     fail(ExitCode::kUsage, "--dims: sampler '{}' has at most {} dimensions, found {}", a.sampler,
          sampler->info().max_dims, a.dims);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -10,6 +11,7 @@
 #include "experiments/interrupt.h"
 #include "experiments/joined.h"
 #include "experiments/message.h"
+#include "samplers/file_points.h"
 
 namespace halfslope {
 namespace {
@@ -68,6 +70,11 @@ FigureRequest parse_request(const FigureArguments& a, const FigureInfo& figure) 
 }
 
 }  // namespace
+
+std::string sampler_label(const std::string& sampler) {
+  const std::string file = std::filesystem::path(point_file_of(sampler)).filename().string();
+  return file.empty() ? sampler : sampler.substr(0, sampler.find(':') + 1) + file;
+}
 
 std::vector<FigureInfo> figure_catalogue() {
   return {

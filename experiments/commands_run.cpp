@@ -31,9 +31,12 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
   std::vector<Listed> rows;
   if (what == "samplers") {
     for (const SamplerInfo& s : catalogue.samplers.list()) {
-      rows.push_back({s.name, s.description, s.reference,
-                      fmt::format("{}, {}, at most {} dimensions", s.sequence ? "sequence" : "set",
-                                  s.randomised ? "randomised" : "deterministic", s.max_dims)});
+      const bool known = s.max_dims > 0;  // not for a family of files, each of which has dimensions of its own
+      rows.push_back(
+          {s.name, s.description, s.reference,
+           known ? fmt::format("{}, {}, at most {} dimensions", s.sequence ? "sequence" : "set",
+                               s.randomised ? "randomised" : "deterministic", s.max_dims)
+                 : fmt::format("{}, replicates and dimensions are the file's", s.sequence ? "sequence" : "set")});
     }
   } else if (what == "estimators") {
     for (const EstimatorInfo& e : catalogue.estimators.list()) rows.push_back({e.name, e.description, e.reference, ""});

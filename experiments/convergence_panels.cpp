@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/palette.h"
+#include "experiments/figures.h"
 
 namespace halfslope {
 namespace {
@@ -17,6 +18,10 @@ std::vector<std::string> values_of(const Lines& lines, Part field) {
     if (std::find(values.begin(), values.end(), line->*field) == values.end()) values.push_back(line->*field);
   }
   return values;
+}
+
+std::string label_of(const std::string& value, Part field) {
+  return field == &ConvergenceLine::sampler ? sampler_label(value) : value;
 }
 
 std::string joined_parts(const std::vector<std::string>& parts) {
@@ -39,16 +44,18 @@ void add_panels(const Lines& lines, const Lines& all, const std::string& title, 
   const auto varies = [](const Lines& some, Part part) { return values_of(some, part).size() > 1; };
   std::vector<std::string> titles = {title};
   for (const Part part : {&ConvergenceLine::estimator, &ConvergenceLine::sampler}) {
-    if (varies(all, part) && !varies(lines, part) && lines.size() > 1) titles.push_back(lines.front()->*part);
+    if (varies(all, part) && !varies(lines, part) && lines.size() > 1)
+      titles.push_back(label_of(lines.front()->*part, part));
   }
   for (std::size_t begin = 0; begin < lines.size(); begin += looks().size()) {
     ConvergencePanel panel{joined_parts(titles), lines.front()->scene, lines.front()->precision, {}};
     for (std::size_t k = begin; k < std::min(lines.size(), begin + looks().size()); ++k) {
       std::vector<std::string> parts;
       for (const Part part : {&ConvergenceLine::estimator, &ConvergenceLine::sampler}) {
-        if (varies(all, part) && (varies(lines, part) || lines.size() == 1)) parts.push_back(lines[k]->*part);
+        if (varies(all, part) && (varies(lines, part) || lines.size() == 1))
+          parts.push_back(label_of(lines[k]->*part, part));
       }
-      if (parts.empty()) parts = {lines[k]->estimator, lines[k]->sampler};
+      if (parts.empty()) parts = {lines[k]->estimator, sampler_label(lines[k]->sampler)};
       panel.lines.push_back({lines[k], joined_parts(parts), k - begin});
     }
     panels.push_back(std::move(panel));
@@ -66,7 +73,7 @@ ConvergencePanels convergence_panels(const std::vector<ConvergenceLine>& lines) 
   for (const Part part :
        {&ConvergenceLine::scene, &ConvergenceLine::estimator, &ConvergenceLine::sampler, &ConvergenceLine::precision}) {
     if (const auto values = values_of(all, part); values.size() == 1)
-      result.common = joined_parts({result.common, values.front()});
+      result.common = joined_parts({result.common, label_of(values.front(), part)});
   }
   for (const std::string& scene : scenes) {
     for (const std::string& precision : precisions) {

@@ -132,8 +132,8 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
   std::vector<Panel> panels;
   for (const RenderSettings& job : jobs) {
     const std::string title = samplers.size() == 1     ? estimator_title(job.estimator.name)
-                              : estimators.size() == 1 ? job.sampler
-                                                       : job.estimator.name + ", " + job.sampler;
+                              : estimators.size() == 1 ? sampler_label(job.sampler)
+                                                       : job.estimator.name + ", " + sampler_label(job.sampler);
     const std::vector<double> values = render_replicate(*source, job, catalogue);
     const auto bad = std::count_if(values.begin(), values.end(), [](double v) { return !std::isfinite(v); });
     if (bad > 0) message("halfslope: {}: {} values are not finite; their pixels are magenta\n", job.label, bad);
@@ -149,7 +149,7 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
   const bool magnify = defaults.magnify && panels.size() > 1 && source->width() >= 8 * kMagnified;
   const double bottom = top + height + (magnify ? kGap + height : 0);
   std::string caption = fmt::format("{}: N = {} a pixel", scene, plural(samples, "sample"));
-  if (samplers.size() == 1) caption += fmt::format(" ({} points)", samplers.front());
+  if (samplers.size() == 1) caption += fmt::format(" ({} points)", sampler_label(samplers.front()));
   if (estimators.size() == 1) caption += fmt::format(" ({})", estimators.front());
   caption += fmt::format(", seed {}; ", spec.seed);
   if (stops != 0) caption += fmt::format("exposure {}{:g} stops, ", stops < 0 ? "\u2212" : "+", std::fabs(stops));

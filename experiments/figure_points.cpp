@@ -4,6 +4,7 @@
 
 #include "analysis/axes.h"
 #include "analysis/palette.h"
+#include "analysis/text_fit.h"
 #include "core/error.h"
 #include "experiments/command_flags.h"
 #include "experiments/figures.h"
@@ -28,7 +29,8 @@ std::string nearest_counts(const LegalNeighbours& neighbours) {
 }
 
 Panel sample(const std::string& name, std::uint64_t count, const FigureRequest& request, const Catalogue& catalogue) {
-  const auto sampler = flag("--samplers", [&] { return catalogue.samplers.make(name); });
+  const auto sampler = make_sampler(catalogue, name, "--samplers");
+  check_replicate(sampler->info(), request.replicate);
   Panel panel{sampler->info(), {}};
   const Layout layout{{2}};
   if (panel.info.max_dims < 2) fail(ExitCode::kUsage, "--samplers: '{}' has one dimension; two are drawn", name);
@@ -74,7 +76,8 @@ void draw_panel(Canvas& canvas, const Panel& panel, Position top_left, double si
   const std::vector<Tick> ticks = {{0, "0"}, {0.5, "0.5"}, {1, "1"}}, bare = {{0, ""}, {0.5, ""}, {1, ""}};
   const Axes axes{{top_left.x, top_left.y + kHeader}, side, side, {{}, ticks, ""}, {{}, y_labels ? ticks : bare, ""}};
   canvas.begin_group(panel.info.name);
-  canvas.text({top_left.x, top_left.y + 9}, panel.info.name, {.size = kTitleSize, .bold = true});
+  canvas.text({top_left.x, top_left.y + 9}, fitted(sampler_label(panel.info.name), kTitleSize, side, true),
+              {.size = kTitleSize, .bold = true});
   canvas.text({top_left.x, top_left.y + 19}, subtitle(panel.info), {.size = kSmallSize, .ink = kInkGrey});
   draw_strata(canvas, axes, panel.info, panel.points.size());
   axes.draw_frame(canvas);

@@ -35,6 +35,9 @@ struct FigureInfo {
 };
 std::vector<FigureInfo> figure_catalogue();
 
+/// A sampler's name as figures write it: of a file of points the last part of its path.
+std::string sampler_label(const std::string& sampler);
+
 /// The first N points of each sampler in a square.
 Canvas draw_points_figure(const FigureRequest& request, const Catalogue& catalogue);
 /// `veach`: a picture of the scene by each estimator at equal N. `glossy`: by each sampler, with a part of each

@@ -1,8 +1,10 @@
 #include "experiments/images.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/error.h"
+#include "core/random.h"
 
 namespace halfslope {
 namespace {
@@ -44,7 +46,23 @@ bool has_picture(const PlannedScene& scene) {
 std::string path_component(const std::string& name) {
   std::string safe = name;
   std::replace(safe.begin(), safe.end(), '/', '_');
-  return safe;
+  constexpr std::size_t kLongest = 200;  // file systems take 255 bytes, and more may be joined to it
+  if (safe.size() <= kLongest) return safe;
+  const std::string hash = fmt::format("{:016x}-", hash_text(name));
+  return hash + safe.substr(safe.size() - (kLongest - hash.size()));
+}
+
+void check_image_folders(const Spec& spec) {
+  for (const auto& names : {spec.scenes, spec.samplers}) {
+    std::map<std::string, std::string> folders;
+    for (const std::string& name : names) {
+      const auto [found, added] = folders.emplace(path_component(name), name);
+      if (!added) {
+        fail(ExitCode::kBadInput, "'{}' and '{}' would have their images in one folder, '{}'; rename a file",
+             found->second, name, found->first);
+      }
+    }
+  }
 }
 
 ExrImage reference_image(const IntegralSource& source, const Reference& reference) {

@@ -23,7 +23,10 @@ void write_reference_images(const std::filesystem::path& folder, const Plan& pla
 /// The picture of a reference over all pixels of its scene.
 ExrImage reference_image(const IntegralSource& source, const Reference& reference);
 
-/// A name as one component of a path: '/' becomes '_'.
+/// A name as one component of a path: '/' becomes '_', and of a name above 200 bytes a hash and its end remain.
 std::string path_component(const std::string& name);
+
+/// Error(kBadInput) where two scenes or samplers would have their images in the same folder.
+void check_image_folders(const Spec& spec);
 
 }  // namespace halfslope

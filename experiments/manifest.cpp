@@ -56,6 +56,7 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   manifest["cells"] = plan.cells.size();
   manifest["evaluations"] = plan.evaluations();
   manifest["skipped"] = plan.skips;
+  if (!plan.sampler_fingerprints.empty()) manifest["sampler_fingerprints"] = plan.sampler_fingerprints;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
     manifest["references"].push_back({{"scene", plan.scenes[s].name},
                                       {"origin", references[s].origin},

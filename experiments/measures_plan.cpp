@@ -100,14 +100,15 @@ MeasuresPlan plan_measures(const MeasuresRequest& request, const SamplerCatalogu
   MeasuresPlan plan;
   for (const std::string& name : request.measures) plan.measures.push_back(make_measure(name));
   if (plan.measures.empty()) return plan;
-  bool fewer = false;
+  std::int64_t most = 0;
   for (const std::string& name : request.samplers) {
-    plan.points.push_back(plan_points(request, *samplers.make(name), plan.measures, left_out));
-    fewer |= plan.points.back().replicates == kMostKept && request.replicates > kMostKept;
+    const auto sampler = samplers.make(name);
+    plan.points.push_back(plan_points(request, *sampler, plan.measures, left_out));
+    most = std::max(most, sampler->info().replicates_of(request.replicates));
   }
-  if (fewer) {
+  if (most > kMostKept) {
     left_out.push_back(fmt::format("discrepancy: replicates {} to {} left out: the first {} are measured", kMostKept,
-                                   request.replicates - 1, kMostKept));
+                                   most - 1, kMostKept));
   }
   return plan;
 }

@@ -5,10 +5,12 @@
 #include <span>
 
 #include "core/error.h"
+#include "experiments/images.h"
 #include "experiments/joined.h"
 #include "experiments/left_out_counts.h"
 #include "experiments/plan_notes.h"
 #include "experiments/reference.h"
+#include "samplers/file_points.h"
 
 namespace halfslope {
 namespace {
@@ -240,8 +242,11 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
     fail_at(spec, "resolution", "no scene is a picture, so `resolution` applies to none");
   }
   std::vector<std::unique_ptr<Sampler>> samplers;
-  for (const auto& name : spec.samplers)
-    samplers.push_back(at(spec, "samplers", [&] { return catalogue.samplers.make(name); }));
+  for (const auto& name : spec.samplers) {
+    const auto make = [&] { return catalogue.samplers.make(name); };
+    samplers.push_back(point_file_of(name).empty() ? at(spec, "samplers", make) : make());
+  }
+  if (!spec.images.empty()) at(spec, "images", [&] { return check_image_folders(spec), 0; });
   for (const auto& sampler : samplers) {
     if (!sampler->info().fingerprint.empty()) plan.sampler_fingerprints.push_back(sampler->info().fingerprint);
   }

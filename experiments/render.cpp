@@ -53,7 +53,8 @@ Estimator check_render(const IntegralSource& source, const std::string& name, co
     return catalogue.estimators.parse(source.techniques().size() > 1 ? "balance" : source.techniques().front().name,
                                       source.techniques());
   });
-  const auto sampler = flag(flags.sampler, [&] { return catalogue.samplers.make(s.sampler); });
+  const auto sampler = make_sampler(catalogue, s.sampler, flags.sampler);
+  check_replicate(sampler->info(), s.replicate);
   const Layout layout = estimator.allocation.layout(source.techniques());
   if (layout.dims() > sampler->info().max_dims) {
     fail(ExitCode::kUsage, "{}: '{}' has {} dimensions; '{}' on scene '{}' takes {}", flags.sampler, s.sampler,

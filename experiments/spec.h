@@ -50,8 +50,8 @@ Spec parse_spec_toml(std::string_view text, const std::string& file);
 Spec load_spec(const std::filesystem::path& path);
 
 /// Sets a key as the flag --KEY VALUE does: the value replaces the file's, lists are separated by commas (a comma
-/// before `identifier=` continues a name with parameters), a resolution is 96,64 or 96x64. Errors are Error(kUsage) and
-/// begin with "--key: ", or with the name that the flag has there instead.
+/// before `identifier=` continues a name with parameters, one after a backslash is a name's own), a resolution is 96,64
+/// or 96x64. Errors are Error(kUsage) and begin with "--key: ", or with the name that the flag has there instead.
 void apply_flag(Spec& spec, std::string_view key, std::string_view value, std::string_view shown_as = {});
 
 /// Checks what no single key can show: the keys without a default are there, and images ⊂ samples. Error(kUsage) where

@@ -23,13 +23,23 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+// A comma after a backslash is a name's own.
+bool is_part_of_name(std::string_view text, std::size_t comma) {
+  return begins_with_parameter(text.substr(comma + 1)) || (comma > 0 && text[comma - 1] == '\\');
+}
+
+std::string without_escapes(std::string_view text) {
+  std::string name(text);
+  for (std::size_t at = name.find("\\,"); at != std::string::npos; at = name.find("\\,", at)) name.erase(at++, 1);
+  return name;
+}
+
 std::vector<std::string> split_list(std::string_view text) {
   std::vector<std::string> list;
   while (true) {
     std::size_t comma = text.find(',');
-    while (comma != std::string_view::npos && begins_with_parameter(text.substr(comma + 1)))
-      comma = text.find(',', comma + 1);
-    list.emplace_back(trimmed(text.substr(0, comma)));
+    while (comma != std::string_view::npos && is_part_of_name(text, comma)) comma = text.find(',', comma + 1);
+    list.push_back(without_escapes(trimmed(text.substr(0, comma))));
     if (comma == std::string_view::npos) return list;
     text.remove_prefix(comma + 1);
   }

@@ -47,6 +47,19 @@ std::vector<Slice> largest_slices(const Plan& plan) {
   return slices;
 }
 
+// "64 replicates"; "64 to 100 replicates" where a sampler's own are of another number. Those of which there is one
+// alone are marked in the table.
+std::string replicates_of(const Plan& plan, const Slice& slice) {
+  std::int64_t least = 0, most = 1;
+  for (const std::size_t c : slice.cells) {
+    const Pass& pass = plan.passes[plan.cells[c].pass];
+    if (!pass.randomised) continue;
+    least = least == 0 ? pass.replicates : std::min(least, pass.replicates);
+    most = std::max(most, pass.replicates);
+  }
+  return (least > 0 && least < most ? fmt::format("{} to ", least) : "") + counted(most, "replicate");
+}
+
 std::string main_table(const Plan& plan, const Results& results, const Slice& slice) {
   std::vector<std::vector<std::string>> rows = {
       {"sampler", "estimator", "rmse", "95 %", "relmse", "95 %", "rate", "95 %", "status"}};
@@ -148,10 +161,9 @@ std::string summary(const Plan& plan, const Results& results) {
   std::string text;
   for (const Slice& slice : largest_slices(plan)) {
     const PlannedScene& scene = plan.scenes[slice.scene];
-    const Pass& pass = plan.passes[plan.cells[slice.cells.front()].pass];
     text +=
         fmt::format("{}{}, {}, N = {}, {}, {}\n\n", text.empty() ? "" : "\n", scene.name, to_string(slice.precision),
-                    slice.samples, counted(scene.pixels.size(), "pixel"), counted(pass.replicates, "replicate"));
+                    slice.samples, counted(scene.pixels.size(), "pixel"), replicates_of(plan, slice));
     text += main_table(plan, results, slice);
     const std::string& sampler = plan.cells[slice.cells.front()].sampler;
     if (results.cells[slice.cells.front()].regions.empty()) continue;

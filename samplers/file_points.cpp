@@ -28,7 +28,7 @@ class FilePoints final : public Sampler {
     info_.max_dims = file_->dims;
     info_.max_count = file_->count;
     info_.replicates = static_cast<std::int64_t>(sets);
-    info_.fingerprint = fmt::format("points {:016x}", file_->hash);
+    info_.fingerprint = fmt::format("{} {:016x}", info_.name, file_->hash);
     info_.caveats.push_back(sets > 1 ? fmt::format("its {} sets are its replicates, whatever `replicates` says", sets)
                                      : "it holds one set, so it is deterministic, whatever `replicates` says");
     info_.caveats.push_back("the same points stand in every pixel, so pixels err alike");
@@ -100,6 +100,15 @@ void add_family(SamplerCatalogue& catalogue, Outside outside, const char* descri
 }
 
 }  // namespace
+
+std::string point_file_of(std::string_view sampler) {
+  const std::size_t colon = sampler.find(':');
+  for (const Outside outside : {Outside::kRefuse, Outside::kWrap, Outside::kClamp}) {
+    if (colon != std::string_view::npos && sampler.substr(0, colon) == family_name(outside))
+      return std::string(sampler.substr(colon + 1));
+  }
+  return "";
+}
 
 void add_file_points(SamplerCatalogue& catalogue) {
   add_family(catalogue, Outside::kRefuse, "points of a text file, one a line; its sets are its replicates");
