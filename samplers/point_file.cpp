@@ -196,8 +196,8 @@ class Reader {
     }
     ++file_.sets;
     if (points_ != file_.count) {
-      fail(ExitCode::kBadInput, "{}:{}: set {} begins here and has {} points, the first has {}; they must be alike",
-           name_, set_line_, file_.sets, points_, file_.count);
+      fail(ExitCode::kBadInput, "{}:{}: set {} begins here and has {} point{}, the first has {}; they must be alike",
+           name_, set_line_, file_.sets, points_, points_ == 1 ? "" : "s", file_.count);
     }
     points_ = 0;
   }
