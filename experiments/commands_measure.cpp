@@ -32,7 +32,7 @@ std::vector<std::string> all_measures(int dims) {
   return names;
 }
 
-std::vector<std::string> sampler_names(const MeasureArguments& a, const SamplerCatalogue& samplers) {
+std::vector<std::string> sampler_names(const MeasureArguments& a, const Catalogue& catalogue) {
   Spec spec;
   if (!a.samplers.empty()) apply_flag(spec, "samplers", a.samplers, "sampler");
   const char* prefix = a.wrap ? "file-wrap:" : a.clamp ? "file-clamp:" : "file:";
@@ -43,14 +43,7 @@ std::vector<std::string> sampler_names(const MeasureArguments& a, const SamplerC
   }
   if ((a.wrap || a.clamp) && a.files.empty())
     fail(ExitCode::kUsage, "--{}: is about the points of --points FILE", a.wrap ? "wrap" : "clamp");
-  for (const std::string& name : spec.samplers) {
-    // A file's fault stays the file's, whoever named it.
-    if (name.starts_with("file")) {
-      samplers.make(name);
-    } else {
-      flag("--sampler", [&] { return samplers.make(name); });
-    }
-  }
+  for (const std::string& name : spec.samplers) make_sampler(catalogue, name, "--sampler");
   return spec.samplers;
 }
 
@@ -170,7 +163,7 @@ void print_summary(const MeasuresPlan& plan, const Measurements& measured, bool 
 int measure_command(const MeasureArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   MeasuresRequest request;
-  request.samplers = sampler_names(a, catalogue.samplers);
+  request.samplers = sampler_names(a, catalogue);
   request.counts = counts_of(a, request.samplers, catalogue.samplers);
   request.dims = dims_of(a, request.samplers, catalogue.samplers);
   if (a.measures == "all") {
