@@ -3,17 +3,24 @@
 #include "core/assertion.h"
 #include "core/error.h"
 #include "samplers/antithetic.h"
+#include "samplers/best_candidate.h"
+#include "samplers/correlated_multi_jittered.h"
 #include "samplers/file_points.h"
 #include "samplers/halton.h"
 #include "samplers/halton_owen.h"
 #include "samplers/hammersley.h"
 #include "samplers/hammersley_owen.h"
+#include "samplers/held_pairs.h"
 #include "samplers/independent.h"
 #include "samplers/jittered.h"
 #include "samplers/kronecker.h"
 #include "samplers/lattice.h"
+#include "samplers/multi_jittered.h"
 #include "samplers/n_rooks.h"
 #include "samplers/orthogonal_array.h"
+#include "samplers/pmj.h"
+#include "samplers/pmj02.h"
+#include "samplers/poisson_disk.h"
 #include "samplers/regular.h"
 #include "samplers/stratified.h"
 
@@ -31,6 +38,12 @@ SamplerCatalogue SamplerCatalogue::built_in() {
   catalogue.add(make_jittered);
   catalogue.add(make_n_rooks);
   catalogue.add(make_orthogonal_array);
+  catalogue.add(make_multi_jittered);
+  catalogue.add(make_correlated_multi_jittered);
+  catalogue.add(make_pmj);
+  catalogue.add(make_pmj02);
+  catalogue.add(make_poisson_disk);
+  catalogue.add(make_best_candidate);
   catalogue.add(make_halton);
   catalogue.add(make_halton_cp);
   catalogue.add(make_halton_owen);
@@ -40,6 +53,7 @@ SamplerCatalogue SamplerCatalogue::built_in() {
   catalogue.add(make_lattice);
   catalogue.add(make_lattice_tent);
   catalogue.add(make_kronecker);
+  catalogue.add_family(padded_family_info(), make_padded);
   add_file_points(catalogue);
   return catalogue;
 }

@@ -1,6 +1,7 @@
 // Equal strata of [0, 1) in 32-bit fixed point, and shuffles of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -53,16 +54,21 @@ class Strata {
   std::vector<std::uint64_t> edges_;
 };
 
+/// Where `index` < count goes under a permutation of 0 … count − 1 that four keys choose: a keyed bijection of the next
+/// power of two that is walked until it falls inside (A. Kensler, "Correlated multi-jittered sampling", 2013, §4, with
+/// four keyed rounds). 1 ≤ count ≤ 2³¹.
+std::uint64_t keyed_permutation(std::uint64_t index, std::uint64_t count, const std::array<std::uint32_t, 4>& keys);
+
 /// A uniformly random permutation of 0 … count − 1 in each lane, from words of Draw::kPermutation.
 ///
 /// Up to kShuffled elements by Fisher and Yates's shuffle, exactly uniform and held in memory. Above, where no
-/// experiment could tell the difference and memory must not grow, by a keyed bijection of the next power of two that is
-/// walked until it falls inside (A. Kensler, "Correlated multi-jittered sampling", 2013, §4, with four keyed rounds).
+/// experiment could tell the difference and memory must not grow, by keyed_permutation().
 class LanePermutation {
  public:
   static constexpr std::uint64_t kShuffled = 4096;
 
-  void prepare(const WordSource& words, int dim, std::uint64_t count);
+  /// From the words of dimension `dim` at `first` and on, kShuffled of them at most.
+  void prepare(const WordSource& words, int dim, std::uint64_t count, std::uint64_t first = 0);
   std::uint64_t at(std::uint64_t index, int lane) const {
     if (count_ <= kShuffled) return table_[index * kLanes + static_cast<std::size_t>(lane)];
     return walk(index, lane);
