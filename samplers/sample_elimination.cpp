@@ -14,8 +14,9 @@ constexpr std::uint32_t kRemoved = ~0u;
 const std::vector<std::uint32_t>& SampleElimination::keep(const std::vector<TorusPoint>& points, std::uint32_t count) {
   const double n = count, candidates = static_cast<double>(points.size());
   const double r_max = std::sqrt(1 / (2 * std::numbers::sqrt3 * n));
-  reach_ = 2 * r_max * 0x1p32;
-  squared_reach_ = static_cast<std::uint64_t>(std::min(reach_ * reach_, 0x1p63));  // no two points are farther apart
+  const double reach = 2 * r_max * 0x1p32;
+  inverse_reach_ = 1 / reach;
+  squared_reach_ = static_cast<std::uint64_t>(std::min(reach * reach, 0x1p63));  // no two points are farther apart
   least_ = (1 - std::pow(n / candidates, 1.5)) * 0.65;
   side_ = static_cast<std::uint32_t>(1 / (2 * r_max));
   if (side_ < 3) side_ = 1;
@@ -29,8 +30,9 @@ const std::vector<std::uint32_t>& SampleElimination::keep(const std::vector<Toru
     put(0, heap_[left - 1]);
     heap_.pop_back();
     sift_down(0);
-    for_neighbours(heaviest, [this](std::uint32_t neighbour, std::uint64_t weight) {
-      weights_[neighbour] -= weight;
+    for_neighbours(heaviest, [this](std::uint32_t neighbour, std::uint64_t distance) {
+      if (places_[neighbour] == kRemoved) return;
+      weights_[neighbour] -= weight(distance);
       sift_down(places_[neighbour]);
     });
   }
@@ -63,7 +65,12 @@ void SampleElimination::weigh() {
   heap_.resize(size), places_.resize(size);
   for (std::uint32_t i = 0; i < size; ++i) put(i, i);
   for (std::uint32_t i = 0; i < size; ++i) {
-    for_neighbours(i, [this, i](std::uint32_t, std::uint64_t weight) { weights_[i] += weight; });
+    for_neighbours(i, [this, i](std::uint32_t neighbour, std::uint64_t distance) {
+      if (neighbour > i) return;
+      const std::uint64_t between = weight(distance);
+      weights_[i] += between;
+      weights_[neighbour] += between;
+    });
   }
   for (std::uint32_t i = size / 2; i-- > 0;) sift_down(i);
 }
@@ -73,8 +80,7 @@ void SampleElimination::for_neighbours(std::uint32_t point, Visit visit) const {
   const auto visit_run = [&](std::uint32_t first, std::uint32_t end) {
     for (std::uint32_t i = first; i < end; ++i) {
       const std::uint64_t distance = squared_distance(points_[i], points_[point]);
-      if (distance >= squared_reach_ || i == point || places_[i] == kRemoved) continue;
-      visit(i, weight(distance));
+      if (distance < squared_reach_ && i != point) visit(i, distance);
     }
   };
   if (side_ == 1) return visit_run(0, static_cast<std::uint32_t>(points_.size()));
@@ -90,10 +96,11 @@ void SampleElimination::for_neighbours(std::uint32_t point, Visit visit) const {
 }
 
 std::uint64_t SampleElimination::weight(std::uint64_t squared_distance) const {
-  const double d = std::sqrt(static_cast<double>(squared_distance)) / reach_;
+  // Signed conversions, which both numbers fit, are the fast ones.
+  const double d = std::sqrt(static_cast<double>(static_cast<std::int64_t>(squared_distance))) * inverse_reach_;
   double w = 1 - std::max(d, least_);
   w *= w, w *= w, w *= w;
-  return static_cast<std::uint64_t>(w * 0x1p40);
+  return static_cast<std::uint64_t>(static_cast<std::int64_t>(w * 0x1p40));
 }
 
 void SampleElimination::sift_down(std::uint32_t place) {

@@ -20,7 +20,7 @@ class SampleElimination {
  private:
   void sort_into_cells(const std::vector<TorusPoint>& points);
   void weigh();
-  /// Calls visit(neighbour, weight) for the points that are left within reach of `point`.
+  /// Calls visit(neighbour, squared distance) for the points within reach of `point`, the removed ones too.
   template <class Visit>
   void for_neighbours(std::uint32_t point, Visit visit) const;
   std::uint64_t weight(std::uint64_t squared_distance) const;
@@ -28,7 +28,7 @@ class SampleElimination {
   void put(std::uint32_t place, std::uint32_t point) { heap_[place] = point, places_[point] = place; }
 
   std::uint32_t side_ = 1;  ///< cells along an axis, each at least as wide as the reach; 1 if there were fewer than 3
-  double reach_ = 0, least_ = 0;  ///< 2 r_max in 2⁻³²; r_min / r_max
+  double inverse_reach_ = 0, least_ = 0;  ///< 2⁻³² / (2 r_max); r_min / r_max
   std::uint64_t squared_reach_ = 0;
   std::vector<TorusPoint> points_;                        // by cell, and so is all that follows
   std::vector<std::uint32_t> original_, cells_, starts_;  // caller's index, cell, where each cell starts
