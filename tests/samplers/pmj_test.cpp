@@ -77,26 +77,30 @@ TEST(Pmj, TheThirdPointTakesEitherQuadrantAlike) {
 }
 
 TEST(Pmj, FreeStrataAreTakenAtRandom) {
-  // From 16 to 32 points: each half of a column of squares, 1/8 wide, has two strata of 1/16 that one of its two
-  // earlier points halves; each of its two new points takes either free half alike, whatever the others do. Whether the
-  // new point of square i shares the stratum of the lower of the earlier points: the coins of x and y of points 16 and
-  // 17, which lie in different columns or rows of quadrants or share one; a fair coin each, 4096 replicates, 1 degree
-  // of freedom, false alarm 1e-8 for each of 32.
+  // From 16 to 32 points each column of quadrants, 1/8 wide, gets two new points and has two strata of 1/32 free: which
+  // of the two takes the lower one is a fair coin, and so it is in rows. All 16 coins are independent in pairs, 8192
+  // replicates: 3 degrees, false alarm 1e-9 for each of 120.
   const auto sampler = sampler_named("pmj");
-  std::array<std::array<std::array<std::uint32_t, 2>, 16>, 2> taken = {};
-  for (std::uint32_t group = 0; group < 256; ++group) {
+  std::vector<std::vector<std::uint8_t>> coins(16);
+  for (std::uint32_t group = 0; group < 512; ++group) {
     const Points points = points_of(*sampler, 32, kPair, group * kLanes);
     for (int lane = 0; lane < kLanes; ++lane) {
       for (int dim = 0; dim < 2; ++dim) {
-        for (std::uint64_t i = 0; i < 16; ++i) {
-          ++taken[static_cast<std::size_t>(dim)][i][points.interval(dim, 16 + i, lane, 16) % 2];
+        std::array<std::vector<std::uint64_t>, 8> fallen;
+        for (std::uint64_t i = 16; i < 32; ++i)
+          fallen[points.interval(dim, i, lane, 8)].push_back(points.at(dim, i, lane));
+        for (std::size_t column = 0; column < 8; ++column) {
+          ASSERT_EQ(fallen[column].size(), 2u);
+          coins[8 * static_cast<std::size_t>(dim) + column].push_back(fallen[column][0] < fallen[column][1]);
         }
       }
     }
   }
-  for (const auto& coordinate : taken) {
-    for (const auto& coin : coordinate) {
-      EXPECT_LT(chi_squared(std::span<const std::uint32_t>(coin)), chi_squared_upper(1, 1e-8));
+  for (std::size_t a = 0; a < 16; ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      std::array<std::uint32_t, 4> table = {};
+      for (std::size_t r = 0; r < coins[a].size(); ++r) ++table[2u * coins[a][r] + coins[b][r]];
+      EXPECT_LT(chi_squared(std::span<const std::uint32_t>(table)), chi_squared_upper(3, 1e-9)) << a << ' ' << b;
     }
   }
 }
