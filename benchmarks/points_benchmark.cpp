@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <string>
+#include <vector>
 
 #include "core/kernel_library.h"
 #include "samplers/catalogue.h"
@@ -36,12 +37,16 @@ void fill_points(benchmark::State& state, const std::string& isa, const std::str
 
 int main(int argc, char** argv) {
   using namespace halfslope;
-  for (const SamplerInfo& sampler : SamplerCatalogue::built_in().list()) {
+  std::vector<std::string> samplers = {"padded:halton-owen"};  // of a family, one
+  for (const std::string& name : SamplerCatalogue::built_in().names()) {
+    if (name.find(':') == std::string::npos) samplers.push_back(name);
+  }
+  for (const std::string& sampler : samplers) {
     for (const bool f64 : {false, true}) {
       for (const Isa isa : supported_isas()) {
-        const std::string name = "coordinates/" + sampler.name + (f64 ? "/f64/" : "/f32/") + to_string(isa);
+        const std::string name = "coordinates/" + sampler + (f64 ? "/f64/" : "/f32/") + to_string(isa);
         benchmark::RegisterBenchmark(
-            name.c_str(), [=](benchmark::State& state) { fill_points(state, to_string(isa), sampler.name, f64); });
+            name.c_str(), [=](benchmark::State& state) { fill_points(state, to_string(isa), sampler, f64); });
       }
     }
   }
