@@ -21,7 +21,7 @@ StreamKey key_of_group(StreamKey key, int dim) {
 
 class HeldPairs final : public PairSet {
  public:
-  explicit HeldPairs(std::unique_ptr<Sampler> sampler) : sampler_(std::move(sampler)) {}
+  explicit HeldPairs(std::shared_ptr<Sampler> sampler) : sampler_(std::move(sampler)) {}
 
   std::optional<LegalNeighbours> illegal(std::uint64_t count) const override { return sampler_->illegal(count, kPair); }
 
@@ -47,7 +47,7 @@ class HeldPairs final : public PairSet {
     for (std::size_t i = 0; i < size; ++i) to[i] = from[rows.indices[i] * std::size_t{kLanes} + i % kLanes];
   }
 
-  std::unique_ptr<Sampler> sampler_;
+  std::shared_ptr<Sampler> sampler_;
   PointBlock held_;
 };
 
@@ -62,10 +62,12 @@ SamplerInfo padded_family_info() {
 }
 
 std::unique_ptr<Sampler> make_padded(const std::string& name, const SamplerCatalogue& catalogue) {
-  SamplerInfo info = catalogue.make(name)->info();
+  // One sampler serves all groups, since each holds what it was given.
+  const std::shared_ptr<Sampler> sampler = catalogue.make(name);
+  SamplerInfo info = sampler->info();
   if (info.max_dims < 2) {
-    fail(ExitCode::kBadInput, "'padded:{}' is none: padding takes pairs, and '{}' has {} dimension(s)", name, name,
-         info.max_dims);
+    fail(ExitCode::kBadInput, "there is no sampler 'padded:{}': padding takes pairs, and '{}' has {} dimension", name,
+         name, info.max_dims);
   }
   info.name = "padded:" + name;
   info.description += "; padded pairs";
@@ -75,13 +77,11 @@ std::unique_ptr<Sampler> make_padded(const std::string& name, const SamplerCatal
   info.rate = std::nullopt;
   if (!info.randomised) {
     info.randomised = true;
-    info.caveats.push_back(
-        name + " is deterministic: every group and every replicate has the same pairs, only their " +
-        "shuffles are random. Estimates are biased, and replicates of what takes a single pair agree");
+    info.caveats.push_back(name + " is deterministic: every group and every replicate has the same pairs, only their " +
+                           "shuffles are random. Estimates are biased, and replicates of a single pair agree");
   }
-  // The catalogue may be gone when a group's points are made.
   return padded(
-      std::move(info), [name, catalogue] { return std::make_unique<HeldPairs>(catalogue.make(name)); }, kHeldPoints);
+      std::move(info), [sampler] { return std::make_unique<HeldPairs>(sampler); }, kHeldPoints);
 }
 
 }  // namespace halfslope

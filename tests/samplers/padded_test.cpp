@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "core/error.h"
 #include "samplers/held_pairs.h"
+#include "samplers/keyed_hash.h"
 #include "tests/samplers/chi_squared.h"
 #include "tests/samplers/nets.h"
 #include "tests/samplers/points.h"
@@ -100,6 +102,45 @@ TEST(Padded, ProductsAcrossGroupsConvergeAsWithIndependentPoints) {
     EXPECT_NEAR(all / estimates / (independent / 144), 1, 0.1) << name;
     EXPECT_LT(within / estimates / independent, 0.2) << name;
   }
+}
+
+/// An octave's index with each bit below the highest flipped by a random bit of the bits above: a shuffle that is
+/// nested to the last bit, which is what the blocks of OctaveShuffle are there to avoid.
+std::uint64_t nested_to_the_last_bit(std::uint64_t index, std::uint32_t key) {
+  std::uint64_t flips = 0;
+  for (int bit = static_cast<int>(std::bit_width(index)) - 2; bit >= 0; --bit) {
+    flips |= std::uint64_t{keyed_word(static_cast<std::uint32_t>(index >> (bit + 1)), key, 0) >> 31} << bit;
+  }
+  return index ^ flips;
+}
+
+// As above, for runs of 2 within runs of 4 within …: the neighbours' covariance is run(2)/2 a point, and that with the
+// others of each larger run follows from V_s = 1/s in the same way.
+TEST(Padded, ANestedShuffleWithoutBlocksWouldLeaveMoreVariance) {
+  constexpr std::uint32_t kGroups = 512;
+  constexpr std::uint64_t kCount = 256;
+  double factor = 1, within = 1;  // Σ_j Cov(x_i, x_j)² over the run, and Σ_j Cov(x_i, x_j), in twelfths
+  for (double s = 2; s <= 128; s *= 2) {
+    const double between = (1 / (s * s) - within) / (s / 2);  // of two points in different halves of a run of s
+    factor += s / 2 * between * between;
+    within = 1 / (s * s);
+  }
+  EXPECT_NEAR(factor, 1.58, 0.01);
+  const auto sampler = sampler_named("pmj02");
+  double squares = 0;
+  for (std::uint32_t group = 0; group < kGroups; ++group) {
+    const Points xs = points_of(*sampler, kCount, kPair, group * kLanes, 1);
+    const Points zs = points_of(*sampler, kCount, kPair, group * kLanes, 2);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      double error = 0;
+      for (std::uint64_t i = 0; i < kCount; ++i) {
+        const std::uint64_t j = nested_to_the_last_bit(i, mix32(group * kLanes + static_cast<std::uint32_t>(lane)));
+        error += (xs(0, i, lane) - 0.5) * (zs(0, j, lane) - 0.5) / kCount;
+      }
+      squares += error * error;
+    }
+  }
+  EXPECT_NEAR(squares / (kGroups * kLanes) * (144.0 * kCount), factor, 0.14);  // 5.5 of its spread, √(2/8192)
 }
 
 TEST(Padded, EveryPairOfASequenceOfNetsIsOneAndItsAlignedRunsAre) {
