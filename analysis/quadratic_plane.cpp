@@ -23,7 +23,7 @@
 namespace halfslope {
 namespace {
 
-constexpr int kPlaces = 62;  ///< of coordinates, after the point
+constexpr int kPlaces = 61;  ///< of coordinates, after the point
 constexpr int kFine = 96;    ///< of g and f
 constexpr std::int64_t kHalf = std::int64_t{1} << (kPlaces - 1);
 
@@ -31,33 +31,30 @@ Int128 fine(DoubleDouble a) {
   return static_cast<Int128>(std::ldexp(a.high, kFine)) + static_cast<Int128>(std::ldexp(a.low, kFine));
 }
 
-/// g and f in integers.
+/// g and f in integers; kMixed where g3 or h is not 0.
+template <bool kMixed>
 class FixedKernel {
  public:
   explicit FixedKernel(const QuadraticKernel& k)
-      : c_times_4(static_cast<std::int64_t>(4 * k.c)),
-        g0_(fine(k.g0)),
+      : g0_(fine(k.g0)),
         f0_(fine(k.g0 + k.mean_g() - DoubleDouble{k.c / 4, 0})),
-        g1_(sixteenths(k.g1)),
-        g2_(sixteenths(k.g2)),
-        g3_(sixteenths(k.g3)),
-        c_(sixteenths(k.c)) {}
+        g1_(quarters(k.g1)),
+        g2_(quarters(k.g2)),
+        g3_(quarters(k.g3)),
+        c_(quarters(k.c)) {}
 
   struct Values {
     Int128 g, f;
   };
   Values operator()(std::int64_t z) const {
-    const Int128 square = (static_cast<Int128>(z) * z) >> (2 * kPlaces - kFine - 4);  // 16 times as fine
-    const Int128 linear = (static_cast<Int128>(z) * g1_ + static_cast<Int128>(z < 0 ? -z : z) * g2_)
-                          << (kFine - kPlaces - 4);
-    const Int128 varying = linear + ((square * g3_) >> 8);
-    return {g0_ + varying, f0_ + varying - ((square * c_) >> 8)};
+    const Int128 square = (static_cast<Int128>(z) * z) >> (2 * kPlaces - kFine - 2);  // 4 times as fine
+    Int128 varying = static_cast<Int128>(g1_ * z + g2_ * (z < 0 ? -z : z)) << (kFine - kPlaces - 2);
+    if constexpr (kMixed) varying += (square * g3_) >> 4;
+    return {g0_ + varying, f0_ + varying - ((square * c_) >> 4)};
   }
 
-  const std::int64_t c_times_4;
-
  private:
-  static std::int64_t sixteenths(double a) { return static_cast<std::int64_t>(16 * a); }
+  static std::int64_t quarters(double a) { return static_cast<std::int64_t>(4 * a); }
 
   Int128 g0_, f0_;
   std::int64_t g1_, g2_, g3_, c_;
@@ -82,65 +79,58 @@ class GapSum {
   WideSum sum_;
 };
 
-std::vector<KeyedPoint> by_coordinate(std::span<const double> coordinates) {
-  std::vector<KeyedPoint> points(coordinates.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    points[i] = {static_cast<std::uint64_t>(std::llrint(coordinates[i] * 0x1p62)), i};
-  radix_sort(points);
-  return points;
-}
+/// A coordinate in units of 2⁻⁶¹.
+std::uint64_t fixed(double x) { return static_cast<std::uint64_t>(std::llrint(x * 0x1p61)); }
+std::int64_t centred(std::uint64_t fixed) { return static_cast<std::int64_t>(fixed) - kHalf; }
 
-std::int64_t centred(const KeyedPoint& point) { return static_cast<std::int64_t>(point.key) - kHalf; }
-
-Int128 sum_of(const std::vector<KeyedPoint>& points) {
-  Int128 sum = 0;
-  for (const KeyedPoint& p : points) sum += centred(p);
-  return sum;
+/// The points in the order of x, each knowing its rank in y, and room for as many again: in one piece, and before all
+/// else, so that the C library keeps it for the next point set rather than give it back to the system.
+std::vector<QuadrantPoint> in_order(const PointSet& points) {
+  const std::size_t count = points.count();
+  std::vector<QuadrantPoint> items(2 * count);
+  std::vector<KeyedPoint> by_x(count), by_y(count);
+  for (std::size_t i = 0; i < count; ++i) by_x[i] = {fixed(points.column(0)[i]), fixed(points.column(1)[i])};
+  radix_sort(by_x);
+  for (std::size_t k = 0; k < count; ++k) by_y[k] = {by_x[k].load, k};
+  radix_sort(by_y);
+  std::vector<std::uint32_t> ranks(count);
+  for (std::uint32_t r = 0; r < count; ++r) ranks[by_y[r].load] = r;
+  for (std::size_t k = 0; k < count; ++k) items[k] = {0, 0, centred(by_x[k].key), centred(by_x[k].load), ranks[k]};
+  return items;
 }
 
 template <bool kMixed>
 DoubleDouble sums(const PointSet& points, const QuadraticKernel& kernel) {
-  const std::size_t count = points.count();
-  const auto n = static_cast<std::int64_t>(count);
-  const FixedKernel values(kernel);
-  const auto scaled_distance = [&values](Int128 distance) {
-    return (distance * values.c_times_4) << (kFine - kPlaces - 2);
-  };
+  const auto n = static_cast<std::int64_t>(points.count());
+  const FixedKernel<kMixed> values(kernel);
 
-  const std::vector<KeyedPoint> by_x = by_coordinate(points.column(0));
-  std::vector<KeyedPoint> by_y(count);
-  for (std::uint32_t k = 0; k < count; ++k)
-    by_y[k] = {static_cast<std::uint64_t>(std::llrint(points.column(1)[by_x[k].point] * 0x1p62)), k};
-  std::vector<QuadrantPoint> items(count);
-  for (std::uint32_t k = 0; k < count; ++k) items[k].y = centred(by_y[k]);
-  radix_sort(by_y);
-  for (std::uint32_t r = 0; r < count; ++r) items[by_y[r].point].rank = r;
-
-  const Int128 x_total = sum_of(by_x), y_total = sum_of(by_y);
-  WideSum products;
+  std::vector<QuadrantPoint> items = in_order(points);
+  Int128 x_total = 0, y_total = 0;
+  for (const QuadrantPoint& item : std::span(items).first(points.count())) x_total += item.x, y_total += item.y;
+  WideSum distances;
   GapSum x_gaps(y_total), y_gaps(x_total);
   Int128 x_before = 0, y_before = 0;
-  for (std::uint32_t k = 0; k < count; ++k) {
-    QuadrantPoint& item = items[k];
-    const std::int64_t x = centred(by_x[k]), y = item.y;
-    const Int128 distances = static_cast<Int128>(x) * (2 * std::int64_t{k} - n) + x_total - 2 * x_before;
-    products.add(values(y).g, -scaled_distance(distances));
+  for (std::int64_t k = 0; k < n; ++k) {
+    QuadrantPoint& item = items[static_cast<std::size_t>(k)];
+    const std::int64_t x = item.x, y = item.y;
+    distances.add(values(y).g, static_cast<Int128>(x) * (2 * k - n) + x_total - 2 * x_before);
     if constexpr (kMixed) x_gaps.add(x, y);
-    item.place = k;
-    item.sum = y_before - static_cast<Int128>(y) * k;
+    item.set_sum(y_before - static_cast<Int128>(y) * k);
     x_before += x, y_before += y;
   }
 
-  WideSum singles, quadrants, g_y, G_x, x_y;
+  WideSum singles, g_G, quadrants, g_y, G_x, x_y;
   Int128 g_total = 0, G_total = 0;
   y_before = 0;
   const auto visit = [&](const QuadrantPoint& item) {
-    const std::int64_t x = centred(by_x[item.place]), y = item.y;
+    const std::int64_t x = item.x, y = item.y;
     const auto [g, f] = values(x);
     const auto [G, F] = values(y);
-    const Int128 before = static_cast<Int128>(y) * item.rank - y_before, after = n * static_cast<Int128>(y) - y_total;
-    products.add(g, n * G - scaled_distance(2 * before - after));
-    quadrants.add(x, 2 * (item.sum - before) + after);
+    const Int128 before = static_cast<Int128>(y) * static_cast<std::int64_t>(item.rank) - y_before,
+                 after = n * static_cast<Int128>(y) - y_total;
+    g_G.add(g, G);
+    distances.add(g, 2 * before - after);
+    quadrants.add(2 * (item.sum() - before) + after, x);
     singles.add(f, F);
     g_total += g, G_total += G;
     if constexpr (kMixed) {
@@ -149,12 +139,12 @@ DoubleDouble sums(const PointSet& points, const QuadraticKernel& kernel) {
     }
     y_before += y;
   };
-  Quadrants(items, visit);
+  Quadrants(std::span(items), visit);
 
   const double c = kernel.c, h = kernel.h;
-  DoubleDouble half = products.value(-2 * kFine) - singles.value(-2 * kFine) * static_cast<double>(n) +
-                      to_double_double(g_total, -kFine) * to_double_double(G_total, -kFine) +
-                      quadrants.value(-2 * kPlaces) * (c * c);
+  DoubleDouble half = (g_G.value(-2 * kFine) - singles.value(-2 * kFine)) * static_cast<double>(n) +
+                      to_double_double(g_total, -kFine) * to_double_double(G_total, -kFine) -
+                      distances.value(-kFine - kPlaces) * c + quadrants.value(-2 * kPlaces) * (c * c);
   if constexpr (kMixed) {
     const DoubleDouble xy = x_y.value(-2 * kPlaces);
     half = half +

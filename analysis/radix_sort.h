@@ -8,7 +8,7 @@ namespace halfslope {
 
 struct KeyedPoint {
   std::uint64_t key;
-  std::uint32_t point;
+  std::uint64_t load;  ///< goes along
 };
 
 /// Ascending by key; of equal keys the earlier stays first. O(N): a radix sort by the keys' high bits, then insertions,

@@ -92,11 +92,6 @@ void measure(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(kMeasure(points.view()));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
-BENCHMARK_TEMPLATE(measure, l2_star_discrepancy)
-    ->Name("l2-star")
-    ->RangeMultiplier(16)
-    ->Range(64, 1 << 20)
-    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_TEMPLATE(measure, star_discrepancy)->Name("star")->Arg(1 << 18)->Arg(1 << 20)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

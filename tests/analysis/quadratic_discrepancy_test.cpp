@@ -104,5 +104,41 @@ TEST(QuadraticDiscrepancy, IsItsDefinition) {
   }
 }
 
+Columns in_thirds(std::size_t count, std::size_t dims) {  // no coordinate but 0 is a multiple of 2⁻⁵³
+  Columns columns = halton(0, count, dims);
+  for (auto& column : columns)
+    for (double& x : column) x /= 3;
+  return columns;
+}
+
+// The integers of the plane and the squares of the line against pairs of binary64, where the parts of D² cancel to 10⁻⁸
+// of themselves.
+TEST(QuadraticDiscrepancy, ShortWaysAgreeWithPairs) {
+  for (const Columns& points : {sobol(0, 4096), sobol(1, 3000), halton(0, 3000), in_thirds(1500, 2), hammersley(12),
+                                halton(7, 2000, 1), in_thirds(1000, 1)}) {
+    for (const Definition& definition : definitions()) {
+      const double pairs = quadratic_discrepancy_by_pairs(view(points), definition.kernel);
+      EXPECT_NEAR(definition.measure(view(points)) / pairs, 1, 1e-15)
+          << definition.name << ' ' << points.size() << ' ' << points[0].size();
+    }
+  }
+}
+
+// In more dimensions: N points, each twice, have the discrepancy of N, and so have they after a shift of the order. The
+// order of all sums changes, and nothing else.
+TEST(QuadraticDiscrepancy, TwiceEachPointIsTheSameInMoreDimensions) {
+  for (Columns points : {halton(0, 700, 3), halton(0, 700, 6), in_thirds(500, 4)}) {
+    Columns twice = points;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      twice[k].insert(twice[k].end(), points[k].begin(), points[k].end());
+      std::rotate(twice[k].begin(), twice[k].begin() + 123, twice[k].end());
+    }
+    for (const Definition& definition : definitions()) {
+      EXPECT_NEAR(definition.measure(view(twice)) / definition.measure(view(points)), 1, 5e-16)
+          << definition.name << ' ' << points.size();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace halfslope
