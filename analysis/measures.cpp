@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "analysis/quadratic_discrepancy.h"
+#include "analysis/t_value.h"
 #include "core/error.h"
 
 namespace halfslope {
@@ -10,15 +12,46 @@ namespace {
 
 constexpr std::size_t kAnyDims = std::numeric_limits<std::size_t>::max();
 
+std::string never(std::size_t, std::size_t) { return ""; }
+
 /// A measure without parameters that is one number, exact.
 template <double (*kMeasure)(const PointSet&)>
-MeasureInfo exact(std::string name, std::string description, std::string reference, std::size_t max_dims) {
+MeasureInfo exact(std::string name, std::string description, std::string reference, std::size_t max_dims,
+                  std::string (*refusal)(std::size_t count, std::size_t dims) = never) {
   MeasureInfo info = {std::move(name), std::move(description), std::move(reference), max_dims, {}, false, {}};
-  info.make = [name = info.name](const std::string&, const Parameters&) {
-    return Measure{name, [](std::size_t, std::size_t) { return std::string(); },
-                   [name](std::size_t, std::size_t) { return std::vector{name}; },
+  info.make = [name = info.name, refusal](const std::string&, const Parameters&) {
+    return Measure{name, refusal, [name](std::size_t, std::size_t) { return std::vector{name}; },
                    [](const PointSet& points) {
                      const double value = kMeasure(points);
+                     return std::vector<MeasuredValue>{{value, value, value, "exact"}};
+                   }};
+  };
+  return info;
+}
+
+/// A discrepancy of quadratic_discrepancy.h.
+template <double (*kMeasure)(const PointSet&)>
+MeasureInfo quadratic(std::string name, std::string description, std::string reference,
+                      std::size_t max_dims = kQuadraticDims) {
+  return exact<kMeasure>(std::move(name), std::move(description), std::move(reference), max_dims,
+                         quadratic_discrepancy_refusal);
+}
+
+MeasureInfo t_value_info() {
+  MeasureInfo info = {"t-value",
+                      "smallest t for which base^m points are a (t,m,d)-net; base=2",
+                      "H. Niederreiter, \"Point sets and sequences with small discrepancy\", Monatsh. Math. 104, 1987",
+                      kAnyDims,
+                      {{"base", 2}},
+                      false,
+                      {}};
+  info.make = [](const std::string& subject, const Parameters& parameters) {
+    const auto base = static_cast<std::uint32_t>(parameters.whole(subject, "base", 2, 1 << 20));
+    const std::string name = base == 2 ? "t-value" : fmt::format("t-value:base={}", base);
+    return Measure{name, [base](std::size_t count, std::size_t dims) { return t_value_refusal(count, dims, base); },
+                   [name](std::size_t, std::size_t) { return std::vector{name}; },
+                   [base](const PointSet& points) {
+                     const double value = t_value(points, base);
                      return std::vector<MeasuredValue>{{value, value, value, "exact"}};
                    }};
   };
@@ -34,9 +67,36 @@ std::span<const MeasureInfo> measure_catalogue() {
                               "H. Niederreiter, \"Random Number Generation and Quasi-Monte Carlo Methods\", 1992, "
                               "definition 2.1",
                               2),
-      exact<l2_star_discrepancy>(
+      quadratic<l2_star_discrepancy>(
           "l2-star", "root of the mean of (share of the points - volume)^2 over boxes anchored at the origin",
-          "T. T. Warnock, \"Computational investigations of low discrepancy point sets\", 1972", kAnyDims),
+          "T. T. Warnock, \"Computational investigations of low discrepancy point sets\", 1972"),
+      quadratic<centered_l2_discrepancy>(
+          "centered-l2", "root of Hickernell's CD^2: boxes from each place to its nearest corner, and all projections",
+          "F. J. Hickernell, \"A generalized discrepancy and quadrature error bound\", Math. Comp. 67, 1998"),
+      quadratic<wraparound_l2_discrepancy>(
+          "wraparound-l2", "root of Hickernell's WD^2: boxes that may go round the torus, and all projections",
+          "F. J. Hickernell, \"Lattice rules: how well do they measure up?\", 1998"),
+      quadratic<mixture_l2_discrepancy>(
+          "mixture-l2", "root of MD^2: a compromise of centered and wrap-around, and all projections",
+          "Y.-D. Zhou, K.-T. Fang, J.-H. Ning, \"Mixture discrepancy for quasi-random point sets\", J. Complexity 29, "
+          "2013"),
+      quadratic<symmetric_l2_discrepancy>(
+          "symmetric-l2", "root of Hickernell's SD^2: unions of boxes at corners of even parity, and all projections",
+          "F. J. Hickernell, \"A generalized discrepancy and quadrature error bound\", Math. Comp. 67, 1998"),
+      quadratic<extreme_l2_discrepancy>(
+          "extreme-l2", "root of the integral of (share of the points - volume)^2 over all boxes (unanchored)",
+          "W. J. Morokoff, R. E. Caflisch, \"Quasi-random sequences and their discrepancies\", SIAM J. Sci. Comput. "
+          "15, "
+          "1994",
+          kExtremeDims),
+      quadratic<periodic_l2_discrepancy>(
+          "periodic-l2", "root of the mean of (share of the points - volume)^2 over all boxes of the torus",
+          "A. Hinrichs, R. Kritzinger, F. Pillichshammer, \"Extreme and periodic L2 discrepancy of plane point sets\", "
+          "Acta Arith. 199, 2021"),
+      quadratic<diaphony>("diaphony", "root of Zinterhof's F^2, over that of one point: weighted Fourier coefficients",
+                          "P. Zinterhof, \"Ueber einige Abschaetzungen bei der Approximation von Funktionen mit "
+                          "Gleichverteilungsmethoden\", 1976"),
+      t_value_info(),
   };
   return catalogue;
 }

@@ -1,6 +1,9 @@
 // The quadratic discrepancies' kernels, their ways by dimension, and the table of measures made of them.
 #include "analysis/quadratic_discrepancy.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -168,6 +171,23 @@ double quadratic_discrepancy(const PointSet& points, const QuadraticKernel& kern
   if (points.dims() > 2) return quadratic_discrepancy_by_pairs(points, kernel);
   const DoubleDouble constant = kernel.mean();
   return root((constant * constant * n * n + plane_sums(points, kernel)) / n / n, 2, kernel);
+}
+
+std::string quadratic_discrepancy_refusal(std::size_t count, std::size_t dims) {
+  const auto n = static_cast<double>(count);
+  if (dims > 2) {
+    constexpr double kMost = 1e12;
+    const double work = static_cast<double>(dims) * n * n / 2;
+    if (work <= kMost) return "";
+    return fmt::format("{} points in {} dimensions would take {:.1e} kernels, d N^2/2 (at most {:.0e})", count, dims,
+                       work, kMost);
+  }
+  if (dims == 2 && count > kPlanePoints) return fmt::format("{} points: in the plane it takes at most 2^26", count);
+  const double bytes = n * static_cast<double>(dims == 2 ? kPlaneBytes : sizeof(double));
+  const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  if (bytes <= memory) return "";
+  return fmt::format("{} points would take {:.1f} GB of memory, and this machine has {:.1f}", count, bytes / 1e9,
+                     memory / 1e9);
 }
 
 double quadratic_discrepancy_variance(std::size_t dims, const QuadraticKernel& kernel) {

@@ -1,6 +1,9 @@
 // The discrepancies that are a double sum over the points: L2 norms of the local discrepancy, and the diaphony.
 #pragma once
 
+#include <cstddef>
+#include <string>
+
 #include "analysis/discrepancy.h"
 #include "analysis/double_double.h"
 #include "analysis/kernels.h"
@@ -31,12 +34,18 @@ extern const QuadraticKernel kL2Star, kExtremeL2, kSymmetricL2, kCenteredL2, kWr
 
 /// The most dimensions that the functions here take: beyond, products of kernels leave binary64's range.
 inline constexpr std::size_t kQuadraticDims = 1024;
+/// Beyond these the extreme discrepancy itself, of the size of 6^(−d/2), may be too small for binary64, and come out 0.
+inline constexpr std::size_t kExtremeDims = 512;
 
 /// D, not squared. All printed digits are right: a few units of 10⁻¹⁶ of itself up to N = 2²⁰, however much its three
 /// parts cancel. One dimension: a sum of squares of which nothing cancels, O(N log N). Two: exact integers, O(N log N)
-/// time, 120 N bytes. More: pairs of binary64 on packets, O(d N²). More than 2²⁶ points in two dimensions, or more than
+/// time, 132 N bytes. More: pairs of binary64 on packets, O(d N²). More than 2²⁶ points in two dimensions, or more than
 /// kQuadraticDims of them, abort. The bits do not depend on the class of instruction set in one and two dimensions.
 double quadratic_discrepancy(const PointSet& points, const QuadraticKernel& kernel);
+
+/// Why it will not measure so many points: the time of more than 10¹² kernels, or memory that this machine does not
+/// have; empty where it will.
+std::string quadratic_discrepancy_refusal(std::size_t count, std::size_t dims);
 
 /// The same in O(d N²) whatever d is: what the faster ways for one and two dimensions are checked against.
 double quadratic_discrepancy_by_pairs(const PointSet& points, const QuadraticKernel& kernel);

@@ -1,86 +1,22 @@
 #include "analysis/quadratic_discrepancy.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstdlib>
+#include <map>
 #include <numbers>
+#include <optional>
+#include <string>
 
-#include "tests/analysis/point_sets.h"
+#include "core/kernel_library.h"
+#include "tests/analysis/quadratic_definitions.h"
 
 namespace halfslope {
 namespace {
 
-using Real = long double;
-using One = Real (*)(Real);
-using Two = Real (*)(Real, Real);
-
-constexpr Real kPi = std::numbers::pi_v<Real>;
-Real b2(Real x) { return x * x - x + Real(1) / 6; }
-Real middle(Real x) { return std::abs(x - Real(0.5)); }
-Real apart(Real x, Real y) { return std::abs(x - y); }
-Real none(Real) { return 0; }
-
-/// D² as its paper writes it: a^d − (b/N) Σ Π f + (1/N²) ΣΣ Π k, per dimension; `f` is `none` where there is no such
-/// sum.
-struct Definition {
-  const char* name;
-  double (*measure)(const PointSet&);
-  const QuadraticKernel& kernel;
-  Real constant_sign, constant;
-  Real single_factor, single_power;  ///< b = single_factor · single_power^d
-  One single;
-  Real pair_power;  ///< of the double sum: 2^d in symmetric
-  Two pair;
-};
-
-const std::vector<Definition>& definitions() {
-  static const std::vector<Definition> all = {
-      {"l2-star", l2_star_discrepancy, kL2Star, 1, Real(1) / 3, 2, 0.5, [](Real x) { return 1 - x * x; }, 1,
-       [](Real x, Real y) { return 1 - std::max(x, y); }},
-      {"centered-l2", centered_l2_discrepancy, kCenteredL2, 1, Real(13) / 12, 2, 1,
-       [](Real x) { return 1 + middle(x) / 2 - middle(x) * middle(x) / 2; }, 1,
-       [](Real x, Real y) { return 1 + middle(x) / 2 + middle(y) / 2 - apart(x, y) / 2; }},
-      {"wraparound-l2", wraparound_l2_discrepancy, kWraparoundL2, -1, Real(4) / 3, 0, 1, none, 1,
-       [](Real x, Real y) { return Real(1.5) - apart(x, y) * (1 - apart(x, y)); }},
-      {"mixture-l2", mixture_l2_discrepancy, kMixtureL2, 1, Real(19) / 12, 2, 1,
-       [](Real x) { return Real(5) / 3 - middle(x) / 4 - middle(x) * middle(x) / 4; }, 1,
-       [](Real x, Real y) {
-         return Real(15) / 8 - middle(x) / 4 - middle(y) / 4 - 3 * apart(x, y) / 4 + apart(x, y) * apart(x, y) / 2;
-       }},
-      {"symmetric-l2", symmetric_l2_discrepancy, kSymmetricL2, 1, Real(4) / 3, 2, 1,
-       [](Real x) { return 1 + 2 * x - 2 * x * x; }, 2, [](Real x, Real y) { return 1 - apart(x, y); }},
-      {"extreme-l2", extreme_l2_discrepancy, kExtremeL2, 1, Real(1) / 12, 2, 0.5, [](Real x) { return x * (1 - x); }, 1,
-       [](Real x, Real y) { return (1 - std::max(x, y)) * std::min(x, y); }},
-      {"periodic-l2", periodic_l2_discrepancy, kPeriodicL2, -1, Real(1) / 3, 0, 1, none, 1,
-       [](Real x, Real y) { return Real(0.5) - apart(x, y) + apart(x, y) * apart(x, y); }},
-      {"diaphony", diaphony, kDiaphony, -1, 1, 0, 1, none, 1,
-       [](Real x, Real y) { return 1 + 2 * kPi * kPi * b2(apart(x, y)); }},
-  };
-  return all;
-}
-
-Real squared(const Definition& definition, const Columns& points) {
-  const std::size_t dims = points.size(), count = points[0].size();
-  const auto power = [dims](Real x) { return std::pow(x, static_cast<Real>(dims)); };
-  const auto n = static_cast<Real>(count);
-  Real singles = 0, pairs = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    Real single = 1;
-    for (const auto& x : points) single *= definition.single(x[i]);
-    singles += single;
-    for (std::size_t j = 0; j < count; ++j) {
-      Real pair = 1;
-      for (const auto& x : points) pair *= definition.pair(x[i], x[j]);
-      pairs += pair;
-    }
-  }
-  const Real sum = definition.constant_sign * power(definition.constant) -
-                   definition.single_factor * power(definition.single_power) * singles / n +
-                   power(definition.pair_power) * pairs / (n * n);
-  return definition.kernel.normalised ? sum / (power(1 + kPi * kPi / 3) - 1) : sum;
-}
+using ::testing::HasSubstr;
 
 // The parts of D² are below 20 in five dimensions (mixture's 15/8 to the 5th is the largest of its mean squares), and
 // 64 bits of each are right, so D² is to 4e-18 or so, and D to that over 2 D.
@@ -138,6 +74,60 @@ TEST(QuadraticDiscrepancy, TwiceEachPointIsTheSameInMoreDimensions) {
           << definition.name << ' ' << points.size();
     }
   }
+}
+
+TEST(QuadraticDiscrepancy, InManyDimensions) {
+  std::mt19937_64 random(2);
+  for (const std::size_t dims : {30, 200, 512, 1024}) {
+    const Columns points = random_points(5, dims, random);
+    for (const Definition& definition : definitions()) {
+      if (&definition.kernel == &kExtremeL2 && dims > kExtremeDims) continue;
+      const Real exact = std::sqrt(squared(definition, points));
+      EXPECT_NEAR(definition.measure(view(points)) / static_cast<double>(exact), 1, 1e-14)
+          << definition.name << ' ' << dims;
+    }
+  }
+}
+
+// Coordinates of which binary64 has more places than a fixed point.
+TEST(QuadraticDiscrepancy, OfTinyCoordinates) {
+  for (const std::size_t dims : {1, 2, 3}) {
+    const Columns points(dims, {0.0, 0x1p-1074, 1e-300, 0x1p-70, 1e-20, 0x1p-62, 3e-18, 1e-5, 1 - 0x1p-53, 1.0});
+    for (const Definition& definition : definitions()) {
+      const Real exact = std::sqrt(squared(definition, points));
+      EXPECT_NEAR(definition.measure(view(points)) / static_cast<double>(exact), 1, 1e-15)
+          << definition.name << ' ' << dims;
+    }
+  }
+}
+
+// AVX2 and AVX-512 give the same bits; the baseline, whose fused operations are not, differs by a unit in the last
+// place of D at most.
+TEST(QuadraticDiscrepancy, DoesNotDependOnTheInstructionSet) {
+  const char* asked = std::getenv("HALFSLOPE_ISA");
+  const std::optional<std::string> before = asked ? std::optional<std::string>(asked) : std::nullopt;
+  for (const Columns& points : {halton(0, 777, 3), halton(3, 600, 5), in_thirds(300, 3)}) {
+    for (const Definition& definition : definitions()) {
+      std::map<std::string, double> values;
+      for (const Isa isa : supported_isas()) {
+        setenv("HALFSLOPE_ISA", to_string(isa).c_str(), 1);
+        const double value = definition.measure(view(points));
+        const auto [known, is_new] = values.emplace(isa_class(isa), value);
+        EXPECT_EQ(known->second, value) << definition.name << ' ' << to_string(isa);
+        EXPECT_NEAR(value / values.begin()->second, 1, 3e-16) << definition.name << ' ' << to_string(isa);
+      }
+    }
+  }
+  before ? setenv("HALFSLOPE_ISA", before->c_str(), 1) : unsetenv("HALFSLOPE_ISA");
+}
+
+TEST(QuadraticDiscrepancy, RefusesWhatWouldTakeTooLong) {
+  EXPECT_EQ(quadratic_discrepancy_refusal(1 << 20, 1), "");
+  EXPECT_EQ(quadratic_discrepancy_refusal(1 << 20, 2), "");
+  EXPECT_EQ(quadratic_discrepancy_refusal(1 << 18, 4), "");
+  EXPECT_THAT(quadratic_discrepancy_refusal(1 << 20, 4), HasSubstr("2.2e+12 kernels"));  // 4 · 2⁴⁰ / 2
+  EXPECT_THAT(quadratic_discrepancy_refusal((std::size_t{1} << 26) + 1, 2), HasSubstr("2^26"));
+  EXPECT_THAT(quadratic_discrepancy_refusal(std::size_t{1} << 50, 1), HasSubstr("9007199.3 GB"));
 }
 
 }  // namespace
