@@ -22,7 +22,7 @@ class PointSet {
 };
 
 /// The star discrepancy D* = sup |#{points in B}/N − volume of B| over the boxes B with a corner at the origin, open or
-/// closed, for 1 or 2 dimensions (any other number aborts). In [1/(2N), 1], without a unit.
+/// closed, for 1 or 2 dimensions (any other number aborts; star_bounds.h takes them). In [1/(2N), 1], without a unit.
 ///
 /// Exact but for rounding: every box that can be the worst one is looked at, and the error is at most
 /// (3 log₂ N + 4) · 2⁻⁵³. One dimension: D* = 1/(2N) + max |x_(i) − (2i − 1)/(2N)| (H. Niederreiter, "Random Number
