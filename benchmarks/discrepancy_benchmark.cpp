@@ -6,13 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/discrepancy.h"
 #include "analysis/ranks.h"
+#include "analysis/star_bounds.h"
 
 namespace halfslope {
 namespace {
@@ -93,6 +96,96 @@ void measure(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK_TEMPLATE(measure, star_discrepancy)->Name("star")->Arg(1 << 18)->Arg(1 << 20)->Unit(benchmark::kMicrosecond);
+
+double inverse(std::uint64_t base, std::uint64_t index) {
+  double value = 0, digit = 1;
+  for (; index > 0; index /= base) value += static_cast<double>(index % base) * (digit /= static_cast<double>(base));
+  return value;
+}
+
+/// Two-dimensional points of three kinds, 2²⁰ of them: less than 6 s on one core each is the floor.
+void star_of_a_million(benchmark::State& state, const std::string& kind) {
+  constexpr std::size_t kCount = 1 << 20;
+  Points points = random_points(kCount);
+  for (std::size_t i = 0; i < kCount && kind != "random"; ++i) {
+    points.x[i] = kind == "hammersley" ? static_cast<double>(i) / kCount : inverse(3, i);
+    points.y[i] = inverse(2, i);
+  }
+  double star = 0;
+  for (auto _ : state) star = star_discrepancy(points.view());
+  state.counters["N*star"] = star * kCount;
+}
+BENCHMARK_CAPTURE(star_of_a_million, hammersley, "hammersley")->Name("star/2^20/hammersley")->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(star_of_a_million, halton, "halton")->Name("star/2^20/halton")->Unit(benchmark::kSecond);
+BENCHMARK_CAPTURE(star_of_a_million, random, "random")->Name("star/2^20/random")->Unit(benchmark::kSecond);
+
+/// Time against N of Halton points, a least-squares line through logarithms: the counter `slope` is that of the time,
+/// `promised` what it may be: of N log² N in two dimensions over these N, and of N^(d/2 + 1) in more.
+void star_cost(benchmark::State& state) {
+  constexpr std::uint64_t kPrimes[] = {2, 3, 5, 7, 11};
+  const auto dims = static_cast<std::size_t>(state.range(0));
+  const auto from = static_cast<std::size_t>(state.range(1)), to = static_cast<std::size_t>(state.range(2));
+  double slope = 0, promised = 0;
+  for (auto _ : state) {
+    std::vector<double> log_count, log_time, log_promise;
+    for (std::size_t count = from; count <= to; count *= 2) {
+      std::vector<std::vector<double>> columns(dims);
+      for (std::size_t k = 0; k < dims; ++k) {
+        for (std::size_t i = 0; i < count; ++i) columns[k].push_back(inverse(kPrimes[k], i));
+      }
+      const PointSet points(std::vector<std::span<const double>>(columns.begin(), columns.end()));
+      double least = std::numeric_limits<double>::infinity();
+      for (int trial = 0; trial < 3; ++trial) {
+        StarBounds found;
+        least = std::min(least, seconds([&] { found = star_bounds(points); }));
+        if (!found.exact) state.SkipWithError("not exact");
+      }
+      const double n = static_cast<double>(count), log_n = std::log(n);
+      log_count.push_back(log_n), log_time.push_back(std::log(least));
+      log_promise.push_back(dims == 2 ? log_n + 2 * std::log(log_n) : (static_cast<double>(dims) / 2 + 1) * log_n);
+    }
+    const auto slope_of = [&](const std::vector<double>& y) {
+      const auto n = static_cast<double>(y.size());
+      const double mean_x = std::accumulate(log_count.begin(), log_count.end(), 0.0) / n;
+      const double mean_y = std::accumulate(y.begin(), y.end(), 0.0) / n;
+      double xy = 0, xx = 0;
+      for (std::size_t i = 0; i < y.size(); ++i) {
+        xy += (log_count[i] - mean_x) * (y[i] - mean_y), xx += (log_count[i] - mean_x) * (log_count[i] - mean_x);
+      }
+      return xy / xx;
+    };
+    slope = slope_of(log_time), promised = slope_of(log_promise);
+  }
+  state.counters["slope"] = slope, state.counters["promised"] = promised;
+}
+BENCHMARK(star_cost)
+    ->Name("star/cost")
+    ->ArgNames({"dims", "from", "to"})
+    ->Args({2, 1 << 12, 1 << 18})
+    ->Args({3, 256, 4096})
+    ->Args({4, 128, 1024})
+    ->Args({5, 64, 512})
+    ->Iterations(1)
+    ->Unit(benchmark::kMillisecond);
+
+/// In many dimensions: time of what is exact, and how far apart the bounds are of what is not.
+void star_of_many_dims(benchmark::State& state) {
+  const auto dims = static_cast<std::size_t>(state.range(0)), count = static_cast<std::size_t>(state.range(1));
+  std::mt19937_64 random(count);
+  std::vector<std::vector<double>> columns(dims, std::vector<double>(count));
+  for (auto& column : columns) {
+    for (double& x : column) x = static_cast<double>(random() >> 11) * 0x1p-53;
+  }
+  const PointSet points(std::vector<std::span<const double>>(columns.begin(), columns.end()));
+  StarBounds found;
+  for (auto _ : state) found = star_bounds(points);
+  state.counters["lower"] = found.lower, state.counters["upper/lower"] = found.upper / found.lower;
+}
+BENCHMARK(star_of_many_dims)
+    ->Name("star/dims")
+    ->ArgNames({"dims", "N"})
+    ->ArgsProduct({{3, 4, 6, 8, 10}, {64, 256, 1024, 4096}})
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace halfslope

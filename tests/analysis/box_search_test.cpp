@@ -21,7 +21,6 @@ double searched(const Columns& points) {
     const CriticalBoxes boxes(view(points), side);
     std::uint64_t work = kNoEnd;
     EXPECT_TRUE(BoxSearch(boxes).run(0, best, work));
-    EXPECT_LT(work, kNoEnd);
   }
   return best;
 }

@@ -45,5 +45,17 @@ TEST(Measures, RefuseTooManyDimensionsAndTooMuchWork) {
   EXPECT_NE(make_measure("diaphony").refusal(1 << 24, 3), "");
 }
 
+TEST(Measures, StarIsBetweenBoundsWhereItIsOutOfReach) {
+  const Measure star = make_measure("star");
+  EXPECT_EQ(star.refusal(1000, 100), "");
+  EXPECT_NE(star.refusal(std::size_t{1} << 25, 1), "");
+  EXPECT_EQ(star.values(view(halton(0, 64, 4))).at(0).method, "exact");
+  const MeasuredValue found = star.values(view(halton(0, 16, 33))).at(0);
+  EXPECT_EQ(found.value, found.lower);
+  EXPECT_LT(found.lower, found.upper);
+  EXPECT_EQ(found.upper, 1);
+  EXPECT_EQ(found.method, "bounds: threshold accepting");
+}
+
 }  // namespace
 }  // namespace halfslope
