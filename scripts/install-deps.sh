@@ -6,7 +6,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build pkg-config
   libgtest-dev libgmock-dev libbenchmark-dev
-  libeigen3-dev libopenexr-dev libxsimd-dev libtbb-dev librandom123-dev
+  libeigen3-dev libnanoflann-dev libopenexr-dev libxsimd-dev libtbb-dev librandom123-dev
   libcli11-dev libtomlplusplus-dev libpugixml-dev libfmt-dev nlohmann-json3-dev libboost-dev
   libpng-dev libfreetype-dev fonts-dejavu-core
   clang-format qemu-user git ca-certificates
