@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "analysis/curve_measures.h"
+#include "analysis/measure_limits.h"
 #include "analysis/quadratic_discrepancy.h"
+#include "analysis/spacing.h"
 #include "analysis/star_bounds.h"
 #include "analysis/t_value.h"
 #include "core/error.h"
@@ -103,9 +106,8 @@ std::span<const MeasureInfo> measure_catalogue() {
           "F. J. Hickernell, \"A generalized discrepancy and quadrature error bound\", Math. Comp. 67, 1998"),
       quadratic<extreme_l2_discrepancy>(
           "extreme-l2", "root of the integral of (share of the points - volume)^2 over all boxes (unanchored)",
-          "W. J. Morokoff, R. E. Caflisch, \"Quasi-random sequences and their discrepancies\", SIAM J. Sci. Comput. "
-          "15, "
-          "1994",
+          "W. J. Morokoff, R. E. Caflisch, \"Quasi-random sequences and their discrepancies\", "
+          "SIAM J. Sci. Comput. 15, 1994",
           kExtremeDims),
       quadratic<periodic_l2_discrepancy>(
           "periodic-l2", "root of the mean of (share of the points - volume)^2 over all boxes of the torus",
@@ -115,6 +117,66 @@ std::span<const MeasureInfo> measure_catalogue() {
                           "P. Zinterhof, \"Ueber einige Abschaetzungen bei der Approximation von Funktionen mit "
                           "Gleichverteilungsmethoden\", 1976"),
       t_value_info(),
+      exact<min_distance>("min-distance", "smallest distance between two points",
+                          "A. Lagae, P. Dutre, \"A comparison of methods for generating Poisson disk distributions\", "
+                          "Computer Graphics Forum 27(1), 2008",
+                          kAnyDims, neighbours_refusal),
+      exact<min_distance_toroidal>(
+          "min-distance-toroidal", "smallest distance between two points on the torus",
+          "A. Lagae, P. Dutre, \"A comparison of methods for generating Poisson disk distributions\", "
+          "Computer Graphics Forum 27(1), 2008",
+          kAnyDims, neighbours_refusal),
+      exact<mean_nn_distance>(
+          "mean-nn-distance", "mean over the points of the distance to the nearest other one",
+          "P. J. Clark, F. C. Evans, \"Distance to nearest neighbor as a measure of spatial relationships in "
+          "populations\", Ecology 35(4), 1954",
+          kAnyDims, neighbours_refusal),
+      exact<mean_nn_distance_toroidal>(
+          "mean-nn-distance-toroidal", "mean over the points of the distance to the nearest other one, on the torus",
+          "K. P. Donnelly, \"Simulations to determine the variance and edge-effect of total nearest neighbour "
+          "distance\", 1978",
+          kAnyDims, neighbours_refusal),
+      exact<relative_radius>(
+          "relative-radius", "smallest toroidal distance over that of the densest packing of as many points",
+          "A. Lagae, P. Dutre, \"A comparison of methods for generating Poisson disk distributions\", "
+          "Computer Graphics Forum 27(1), 2008, section 2",
+          kMostPackedDims, neighbours_refusal),
+      exact<dispersion>(
+          "dispersion", "radius of the largest circle centred in the unit square that holds no point",
+          "H. Niederreiter, \"Random Number Generation and Quasi-Monte Carlo Methods\", 1992, definition 6.2", 2,
+          dispersion_refusal),
+      exact<dispersion_toroidal>(
+          "dispersion-toroidal", "radius of the largest circle on the torus that holds no point",
+          "H. Niederreiter, \"Random Number Generation and Quasi-Monte Carlo Methods\", 1992, definition 6.2", 2,
+          dispersion_refusal),
+      {"pcf",
+       "pair correlation: pairs at each toroidal distance, over those expected of independent points",
+       "D. Stoyan, W. S. Kendall, J. Mecke, \"Stochastic Geometry and its Applications\", 1995, section 4.5",
+       kAnyDims,
+       {{"bins", 200}, {"max", 0}},
+       true,
+       make_pair_correlation},
+      {"spectrum",
+       "power |sum_j exp(-2 pi i k x_j)|^2 / N at integer frequencies k",
+       "R. A. Ulichney, \"Dithering with blue noise\", Proc. IEEE 76(1), 1988",
+       2,
+       {{"size", 64}},
+       true,
+       make_spectrum},
+      {"radial-spectrum",
+       "mean power over each ring of frequencies, round(|k|) = f",
+       "R. A. Ulichney, \"Dithering with blue noise\", Proc. IEEE 76(1), 1988",
+       2,
+       {{"size", 64}},
+       true,
+       make_radial_spectrum},
+      {"anisotropy",
+       "variance of the power over each ring, over its squared mean, in dB",
+       "R. A. Ulichney, \"Dithering with blue noise\", Proc. IEEE 76(1), 1988",
+       2,
+       {{"size", 64}},
+       true,
+       make_anisotropy},
   };
   return catalogue;
 }
