@@ -26,7 +26,7 @@ std::string neighbours_refusal(std::size_t count, std::size_t dims) {
   if (count < 2) return kTwoPoints;
   const auto n = static_cast<double>(count), d = static_cast<double>(dims);
   const bool tree = dims <= NeighbourSearch::kMostDims;
-  return too_much(tree ? 0 : n * n * d / 2, tree ? n * (8 * d + 48) : n * 8);
+  return too_much(tree ? 0 : n * n * d / 2, tree ? n * (16 * d + 64) : n * 8);
 }
 
 std::string dispersion_refusal(std::size_t count, std::size_t dims) {

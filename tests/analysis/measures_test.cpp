@@ -111,8 +111,8 @@ TEST(Measures, RefuseWhatTheyCannotMeasure) {
   EXPECT_EQ(refusal("min-distance", 100, 1000), "");
   EXPECT_EQ(refusal("relative-radius", 100, 3), "");
   EXPECT_THAT(refusal("relative-radius", 100, 4), HasSubstr("at most 3 dimensions"));
-  // The figure is named: 1e9 points of 2 dimensions take 64 bytes each; (3e6)² · 7/2 differences.
-  EXPECT_THAT(refusal("min-distance", 1'000'000'000, 2), HasSubstr("64 GB"));
+  // The figure is named: 1e9 points of 2 dimensions take 96 bytes each; (3e6)² · 7/2 differences.
+  EXPECT_THAT(refusal("min-distance", 1'000'000'000, 2), HasSubstr("96 GB"));
   EXPECT_THAT(refusal("min-distance", 3'000'000, 7), HasSubstr("3.2e+13 steps"));
   EXPECT_THAT(refusal("pcf:max=0.5", 10'000'000, 2), HasSubstr("1e+14 steps"));
   EXPECT_EQ(refusal("pcf", 10'000'000, 2), "");

@@ -9,7 +9,9 @@
 namespace halfslope {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::StartsWith;
@@ -157,10 +159,10 @@ TEST(SpecToml, MeasuresAreNamesOfTheCatalogue) {
   EXPECT_THAT(parse_spec_toml(kSmallest, "x").measures, IsEmpty());
   EXPECT_THAT(parse_spec_toml("measures = 'l2-star'", "x").measures, ElementsAre("l2-star"));
   EXPECT_THAT(parse_spec_toml("measures = 'none'", "x").measures, IsEmpty());
-  EXPECT_EQ(
-      refusal("\nmeasures = ['star', 'l2star']"),
-      "x.toml:2:21: key 'measures': there is no measure 'l2star'; did you mean 'l2-star'? allowed: star, l2-star, "
-      "a list of different ones, or 'none'");
+  EXPECT_THAT(refusal("\nmeasures = ['star', 'l2star']"),
+              AllOf(StartsWith("x.toml:2:21: key 'measures': there is no measure 'l2star'; did you mean 'l2-star'? "
+                               "allowed: star, l2-star, "),
+                    EndsWith(", a list of different ones, or 'none'")));
   EXPECT_THAT(refusal("measures = 'everything'"),
               StartsWith("x.toml:1:12: key 'measures': there is no measure 'everything'; allowed: star, l2-star, "));
   EXPECT_THAT(refusal("measures = ['none']"), HasSubstr("'none' stands in a list; it stands alone"));
