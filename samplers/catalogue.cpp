@@ -5,6 +5,7 @@
 #include "samplers/antithetic.h"
 #include "samplers/best_candidate.h"
 #include "samplers/correlated_multi_jittered.h"
+#include "samplers/faure.h"
 #include "samplers/file_points.h"
 #include "samplers/halton.h"
 #include "samplers/halton_owen.h"
@@ -22,6 +23,8 @@
 #include "samplers/pmj02.h"
 #include "samplers/poisson_disk.h"
 #include "samplers/regular.h"
+#include "samplers/sobol.h"
+#include "samplers/sobol_owen.h"
 #include "samplers/stratified.h"
 
 namespace halfslope {
@@ -40,19 +43,26 @@ SamplerCatalogue SamplerCatalogue::built_in() {
   catalogue.add(make_orthogonal_array);
   catalogue.add(make_multi_jittered);
   catalogue.add(make_correlated_multi_jittered);
-  catalogue.add(make_pmj);
-  catalogue.add(make_pmj02);
-  catalogue.add(make_poisson_disk);
-  catalogue.add(make_best_candidate);
   catalogue.add(make_halton);
   catalogue.add(make_halton_cp);
   catalogue.add(make_halton_owen);
   catalogue.add(make_hammersley);
   catalogue.add(make_hammersley_cp);
   catalogue.add(make_hammersley_owen);
+  catalogue.add(make_faure);
+  catalogue.add(make_faure_owen);
+  catalogue.add(make_sobol);
+  catalogue.add(make_sobol_xor);
+  catalogue.add(make_sobol_cp);
+  catalogue.add(make_sobol_owen);
+  catalogue.add(make_sobol_owen_fast);
+  catalogue.add(make_pmj);
+  catalogue.add(make_pmj02);
   catalogue.add(make_lattice);
   catalogue.add(make_lattice_tent);
   catalogue.add(make_kronecker);
+  catalogue.add(make_poisson_disk);
+  catalogue.add(make_best_candidate);
   catalogue.add_family(padded_family_info(), make_padded);
   add_file_points(catalogue);
   return catalogue;

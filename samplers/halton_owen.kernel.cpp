@@ -13,25 +13,15 @@
 // + a·b^k with top digit a at place k ≥ t, the first k digits of x_i are those of x_j, and its digit k is g + h·a (mod
 // b), where g is the digit k of x_j. Each point thus costs one step from its parent j and two hashes, whatever the
 // depth.
+#include <algorithm>
 #include <array>
 
 #include "core/point_block.h"
 #include "samplers/kernel_functions.h"
+#include "samplers/keyed_hash.h"
 
 namespace halfslope::kernel {
 namespace {
-
-// A 32-bit finaliser with low bias (constants: C. Wellons's exhaustive search, "hash prospector").
-inline std::uint32_t mix(std::uint32_t x) {
-  x = (x ^ (x >> 16)) * 0x21f0aaadu;
-  x = (x ^ (x >> 15)) * 0x735a2d97u;
-  return x ^ (x >> 15);
-}
-
-// A random word of (key, index): two keyed rounds.
-inline std::uint32_t keyed(std::uint32_t index, std::uint32_t key0, std::uint32_t key1) {
-  return mix(mix(index ^ key0) + key1);
-}
 
 // (digits + (u + ½)/2³²) / b^{k+1} strictly inside its interval of length b^−(k+1), cut to 53 bits too: the half keeps
 // it 2⁻³³ / b^{k+1} from the interval's ends, which up to b^{k+1} = 2¹⁸ is 4 · 2⁻⁵³, and the two roundings (of
@@ -66,11 +56,11 @@ inline void step(std::uint32_t base, const Level& level, std::uint32_t k, std::u
     const std::int32_t g = digits - above * static_cast<std::int32_t>(base);
     const std::uint32_t h =
         1 + static_cast<std::uint32_t>(
-                (std::uint64_t{keyed(node, keys[2 * kLanes + l], keys[3 * kLanes + l])} * (base - 1)) >> 32);
+                (std::uint64_t{keyed_word(node, keys[2 * kLanes + l], keys[3 * kLanes + l])} * (base - 1)) >> 32);
     const auto sum = static_cast<std::int32_t>(static_cast<std::uint32_t>(g) + h * a);
     const auto quotient = static_cast<std::int32_t>((sum + 0.5) * inverse_b);
     const double digit = sum - quotient * b;
-    const std::uint32_t u = keyed(index, keys[l], keys[kLanes + l]) >> level.drop;
+    const std::uint32_t u = keyed_word(index, keys[l], keys[kLanes + l]) >> level.drop;
     const double fraction =
         (static_cast<std::int32_t>(u >> 1) * 2.0 + static_cast<std::int32_t>(u & 1) + 0.5) * level.scale;
     to[l] = (above * b + digit + fraction) * level.inverse;
@@ -79,7 +69,7 @@ inline void step(std::uint32_t base, const Level& level, std::uint32_t k, std::u
 
 inline void origin(const std::uint32_t* __restrict keys, double* __restrict to) {
   for (int l = 0; l < kLanes; ++l) {
-    const std::uint32_t u = keyed(0, keys[l], keys[kLanes + l]);
+    const std::uint32_t u = keyed_word(0, keys[l], keys[kLanes + l]);
     to[l] = (static_cast<std::int32_t>(u >> 1) * 2.0 + static_cast<std::int32_t>(u & 1) + 0.5) * 0x1p-32;
   }
 }
@@ -100,13 +90,14 @@ void halton_owen_table(std::uint32_t base, const std::uint32_t* keys, std::uint3
   }
 }
 
-void halton_owen(const HaltonDim& dim, std::uint32_t begin, int count, std::uint32_t* high, std::uint32_t* low) {
+void halton_owen(const HaltonDim& dim, const std::uint32_t* indices, int count, std::uint32_t* high,
+                 std::uint32_t* low) {
   // Powers of the base above the table, and the constants of each place.
   std::array<Level, 32> levels;
   std::array<std::uint64_t, 33> powers;
   std::uint64_t power = 1;
   for (std::uint32_t k = 0; k < dim.table_digits; ++k) power *= dim.base;
-  const std::uint64_t last = std::uint64_t{begin} + static_cast<std::uint64_t>(count) - 1;
+  const std::uint64_t last = *std::max_element(indices, indices + count);
   std::size_t places = 0;
   for (; power <= last; power *= dim.base, ++places) {
     powers[places] = power;
@@ -115,7 +106,7 @@ void halton_owen(const HaltonDim& dim, std::uint32_t begin, int count, std::uint
   powers[places] = power;
 
   for (int s = 0; s < count; ++s) {
-    const std::uint32_t i = begin + static_cast<std::uint32_t>(s);
+    const std::uint32_t i = indices[s];
     alignas(64) double x[kLanes];
     const std::uint64_t tabled = places ? powers[0] : power;
     const double* start = dim.table + static_cast<std::size_t>(i % tabled) * kLanes;

@@ -4,7 +4,9 @@
 #include "samplers/kernel_functions.h"
 
 extern "C" __attribute__((visibility("default"))) const void* halfslope_sampler_kernels() {
-  static constexpr halfslope::SamplerKernels kTable = {halfslope::kernel::random_words, halfslope::kernel::halton_owen,
-                                                       halfslope::kernel::halton_owen_table};
+  namespace kernel = halfslope::kernel;
+  static constexpr halfslope::SamplerKernels kTable = {kernel::random_words,      kernel::halton_owen,
+                                                       kernel::halton_owen_table, kernel::sobol_owen,
+                                                       kernel::sobol_owen_table,  kernel::sobol_owen_fast};
   return &kTable;
 }

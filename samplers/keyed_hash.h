@@ -1,5 +1,5 @@
-// Random words at random places: a hash of an index under keys that are words of Philox. Where neighbouring indices are
-// wanted in bulk, WordSource is both better and faster.
+// Random words at random places: a hash of an index under keys that are words of Philox, in a few instructions. Where
+// neighbouring indices are wanted in bulk, WordSource is both better and faster.
 #pragma once
 
 #include <cstdint>

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/generator_matrices.h"
 #include "core/layout.h"
 #include "core/point_block.h"
 #include "core/random.h"
@@ -69,6 +70,12 @@ class Sampler {
   /// Fills points [begin, begin + block.samples()) of what was prepared, in any order of calls. `block` has the
   /// layout's dims; low words are filled where it has them.
   virtual void fill(std::uint64_t begin, PointBlock& block) = 0;
+  /// The generator matrices of the first base^digits points in `dims` dimensions, if they are a digital net or a
+  /// scramble or digital shift of one, which leave its t as it is; nothing where they are none, or beyond its digits.
+  virtual std::optional<GeneratorMatrices> generator_matrices(int dims, int digits) const {
+    (void)dims, (void)digits;
+    return std::nullopt;
+  }
 };
 
 }  // namespace halfslope

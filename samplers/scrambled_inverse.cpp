@@ -1,6 +1,7 @@
 #include "samplers/scrambled_inverse.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "samplers/radical_inverse.h"
 
@@ -24,17 +25,27 @@ void ScrambledInverse::prepare(const WordSource& words, int dim, std::uint32_t b
   kernels_->halton_owen_table(base, keys_.data(), tabled, table_.data());
 }
 
-void ScrambledInverse::fill(std::uint64_t begin, PointBlock& block, int dim) const {
-  kernels_->halton_owen({base_, table_digits_, table_.data(), keys_.data()}, static_cast<std::uint32_t>(begin),
-                        block.samples(), block.high(dim), block.low(dim));
+void ScrambledInverse::fill(std::uint64_t begin, PointBlock& block, int dim) {
+  indices_.resize(static_cast<std::size_t>(block.samples()));
+  std::iota(indices_.begin(), indices_.end(), static_cast<std::uint32_t>(begin));
+  fill(indices_, block, dim);
+}
+
+void ScrambledInverse::fill(std::span<const std::uint32_t> indices, PointBlock& block, int dim) const {
+  kernels_->halton_owen({base_, table_digits_, table_.data(), keys_.data()}, indices.data(), block.samples(),
+                        block.high(dim), block.low(dim));
+}
+
+std::uint64_t ScrambledInverse::most_points_in(std::uint32_t base) {
+  std::uint64_t power = base;
+  while (power * base <= kMost) power *= base;
+  return power;
 }
 
 std::uint64_t ScrambledInverse::most_points(int bases) {
   std::uint64_t most = kMost;
   for (const std::uint32_t base : primes().first(std::min(static_cast<std::size_t>(bases), primes().size()))) {
-    std::uint64_t power = base;
-    while (power * base <= kMost) power *= base;
-    most = std::min(most, power);
+    most = std::min(most, most_points_in(base));
   }
   return most;
 }

@@ -59,7 +59,8 @@ TEST(HaltonOwenEdges, PointsStayInTheirIntervalsAndBelowOneAtBothEndsOfTheirFrac
         for (std::size_t w = 0; w < kWords.size(); ++w) {
           std::fill_n(keys.begin() + kLanes, kLanes, key_for(kWords[w], a * base));
           std::array<std::uint32_t, kLanes> high, low;
-          table.halton_owen(dim, a * base, 1, high.data(), low.data());
+          const std::uint32_t index = a * base;
+          table.halton_owen(dim, &index, 1, high.data(), low.data());
           const std::uint64_t top = high[3] * intervals, bottom = (std::uint64_t{low[3]} << 11) * intervals;
           interval[w] = (top + (bottom >> 32)) >> 32;
         }

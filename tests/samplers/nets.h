@@ -1,6 +1,7 @@
-// Elementary intervals in base 2.
+// Elementary intervals.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -20,6 +21,42 @@ inline bool is_net(const Points& points, int m, int lane) {
     }
   }
   return true;
+}
+
+/// Whether each elementary interval of b^−(k_0 + … + k_(dims−1)), k_0 + … = digits, holds as many of the points as each
+/// other; `widths` are the b^k of the dimensions before `dim`.
+inline bool is_even(const Points& points, int dims, std::uint64_t base, int digits, int lane,
+                    std::vector<std::uint64_t> widths = {}) {
+  if (static_cast<int>(widths.size()) + 1 < dims) {
+    std::uint64_t width = 1;
+    for (int k = 0; k <= digits; ++k, width *= base) {
+      auto longer = widths;
+      longer.push_back(width);
+      if (!is_even(points, dims, base, digits - k, lane, longer)) return false;
+    }
+    return true;
+  }
+  std::uint64_t last = 1, boxes = 1;
+  for (int k = 0; k < digits; ++k) last *= base;
+  widths.push_back(last);
+  for (const std::uint64_t width : widths) boxes *= width;
+  std::vector<std::uint64_t> counts(boxes);
+  for (std::uint64_t i = 0; i < points.count(); ++i) {
+    std::uint64_t box = 0;
+    for (int d = 0; d < dims; ++d) {
+      const std::uint64_t width = widths[static_cast<std::size_t>(d)];
+      box = box * width + points.interval(d, i, lane, width);
+    }
+    ++counts[box];
+  }
+  return std::all_of(counts.begin(), counts.end(), [&](std::uint64_t n) { return n * boxes == points.count(); });
+}
+
+/// The least t for which the base^m points are a (t, m, dims)-net, by counting.
+inline int counted_t(const Points& points, int dims, std::uint64_t base, int m, int lane) {
+  int digits = 0;
+  while (digits < m && is_even(points, dims, base, digits + 1, lane)) ++digits;
+  return m - digits;
 }
 
 }  // namespace halfslope
