@@ -78,11 +78,20 @@ CellStatistics summarise(const CellData& data) {
   row.relmse_lo = relmse.lo;
   row.relmse_hi = relmse.hi;
 
+  if (data.infinite_variance) {
+    for (std::optional<double>* number : {&row.variance, &row.rmse, &row.rmse_lo, &row.rmse_hi, &row.relmse,
+                                          &row.relmse_lo, &row.relmse_hi, &row.kurtosis}) {
+      number->reset();
+    }
+    if (!data.deterministic) row.bias_se.reset();
+  }
+
   const bool not_positive =
       (!mse.value && std::isfinite(data.mse.mean)) || (!relmse.value && std::isfinite(data.relmse.mean));
   row.invalid = data.nonfinite > 0 || !std::isfinite(data.mse.mean);
   Status status;
   status.mark_if(row.invalid, "invalid");
+  status.mark_if(data.infinite_variance, "infinite-variance");
   status.mark_if(exact, "exact");
   status.mark_if(deterministic, "deterministic");
   status.mark_if(!deterministic && data.replicates < kCertifiedReplicates, "few-replicates");

@@ -41,6 +41,7 @@ struct CellData {
   std::int64_t nonfinite = 0;             ///< non-finite estimates met
   std::uint64_t bootstrap_seed = 0;       ///< of the cell's name
   bool deterministic = false;             ///< the sampler has one replicate
+  bool infinite_variance = false;         ///< of the integrand: no squared error has an expectation
 };
 
 /// The numbers of one row. Empty where a number has no meaning, is not finite (the cell is then `invalid`), or cannot
@@ -67,6 +68,10 @@ struct CellStatistics {
 ///
 /// Marks, in this order:
 ///   invalid            an estimate is not finite, or a reference, or their squared errors
+///   infinite-variance  the integrand has none: variance, rmse, relmse, kurtosis and their intervals would estimate
+///   what
+///                      does not exist and are empty, and so is the bias_se of a randomised sampler; mae stays, since
+///                      E |e| is finite
 ///   exact              every error is 0; rmse is 0, without interval
 ///   deterministic      the sampler is, or R = 1: variance, kurtosis and intervals are empty
 ///   few-replicates     R < 16: the intervals are not certified

@@ -64,6 +64,9 @@ class IntegralSource {
   virtual PixelIntegral pixel(int index) const = 0;
   /// The exact value of the pixel, constant part included, where it is known in closed form.
   virtual std::optional<Color> closed_form(int /*pixel*/) const { return std::nullopt; }
+  /// The variance of f at a uniform point, of a scene of one integral, where it is known; infinity where f² has no
+  /// integral: then an estimate's mean squared error does not exist, and nothing that estimates it is reported.
+  virtual std::optional<double> variance() const { return std::nullopt; }
   /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
   virtual std::vector<std::string> regions() const { return {}; }
   virtual int region(int /*pixel*/) const { return 0; }

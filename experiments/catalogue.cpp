@@ -34,8 +34,9 @@ Catalogue Catalogue::built_in() {
                         });
   }
   for (const IntegrandInfo& scene : analytic_scenes()) {
-    catalogue.add_scene({scene.name, scene.parameters, scene.description, scene.reference},
-                        [](const std::string& name, const Resolution&) { return make_analytic_scene(name); });
+    catalogue.add_scene(
+        {scene.name, scene.parameters, scene.description, scene.reference, false, scene.integral, scene.variance},
+        [](const std::string& name, const Resolution&) { return make_analytic_scene(name); });
   }
   return catalogue;
 }
@@ -59,6 +60,7 @@ std::unique_ptr<IntegralSource> Catalogue::make_scene(const std::string& name, c
     if (entry.info.name == head) return entry.make(name, resolution);
     names.push_back(entry.info.name);
   }
+  if (auto scene = make_analytic_scene(name)) return scene;  // in its other spelling
   fail(ExitCode::kBadInput,
        "there is no scene '{}'{} (`halfslope list scenes` names them all; a path that ends in .xml is a Mitsuba 3 "
        "scene)",

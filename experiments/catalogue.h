@@ -18,6 +18,7 @@ namespace halfslope {
 struct SceneInfo {
   std::string name, parameters, description, reference;
   bool rendered = false;
+  std::optional<double> integral{}, variance{};  ///< where the name alone determines them
 };
 
 /// Samplers, estimators and scenes by name. Embedders add their own before they call the command line:
@@ -39,8 +40,8 @@ class Catalogue {
   EstimatorCatalogue estimators;
   void add_scene(SceneInfo info, MakeScene make);
   std::vector<SceneInfo> scenes() const;
-  /// A catalogue scene ("name" or "name:parameters"), or a Mitsuba scene where the name ends in ".xml". Throws
-  /// Error(kBadInput) naming the nearest scene where there is none.
+  /// A catalogue scene ("name" or "name:parameters"; an integrand's other spelling too, "sobol_g_d4"), or a Mitsuba
+  /// scene where the name ends in ".xml". Throws Error(kBadInput) naming the nearest scene where there is none.
   std::unique_ptr<IntegralSource> make_scene(const std::string& name, const Resolution& resolution) const;
 
  private:

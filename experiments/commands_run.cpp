@@ -1,6 +1,7 @@
 // run and list.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -25,7 +26,18 @@ using Json = nlohmann::ordered_json;
 
 struct Listed {
   std::string name, description, reference, extra;
+  std::optional<double> integral{}, variance{};
 };
+
+std::string number(double x) { return std::isinf(x) ? "infinite" : fmt::format("{:.6g}", x); }
+
+// ", integral 0.5, variance 0.25", as far as they are known.
+std::string moments(const SceneInfo& scene) {
+  std::string text;
+  if (scene.integral) text += ", integral " + number(*scene.integral);
+  if (scene.variance) text += ", variance " + number(*scene.variance);
+  return text;
+}
 
 std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) {
   std::vector<Listed> rows;
@@ -43,7 +55,7 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
   } else if (what == "scenes") {
     for (const SceneInfo& s : catalogue.scenes()) {
       rows.push_back({s.parameters.empty() ? s.name : s.name + ":" + s.parameters, s.description, s.reference,
-                      s.rendered ? "rendered" : "analytic"});
+                      s.rendered ? "rendered" : "analytic" + moments(s), s.integral, s.variance});
     }
   } else if (what == "measures") {
     for (const MeasureInfo& m : measure_catalogue()) {
@@ -64,6 +76,9 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
         {"no-spread",
          "all replicates err alike: nothing that contributes was met, or only rounding is left; no interval, no rate",
          "", ""},
+        {"infinite-variance",
+         "the integrand's variance is infinite: no mean squared error exists, so no rmse, no variance, no rate", "",
+         ""},
         {"heavy-tailed", "kurtosis above max(5, R/40): rare large errors; the intervals are not certified", "", ""},
         {"reference-limited", "the reference's own variance is more than 10 % of the measured error, or all of it", "",
          ""},
@@ -142,6 +157,9 @@ int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
       if (arguments.json) {
         json[kind].push_back(
             {{"name", row.name}, {"description", row.description}, {"kind", row.extra}, {"reference", row.reference}});
+        if (row.integral) json[kind].back()["integral"] = *row.integral;
+        if (row.variance)
+          json[kind].back()["variance"] = std::isinf(*row.variance) ? Json("infinite") : Json(*row.variance);
         continue;
       }
       fmt::print("  {:<{}}  {}\n", row.name, width, row.description);

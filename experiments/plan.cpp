@@ -1,6 +1,7 @@
 #include "experiments/plan.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <span>
 
@@ -105,6 +106,11 @@ PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std:
   if (has_closed_form(*scene.source, scene.pixels))
     plan.skips.push_back(fmt::format("{}: its integral{} known in closed form: no reference is rendered", name,
                                      scene.source->pixels() == 1 ? " is" : "s are"));
+  if (has_infinite_variance(*scene.source)) {
+    plan.skips.push_back(
+        fmt::format("{}: its variance is infinite, so no mean squared error exists: no rmse, no rate", name));
+    plan.left_out.push_back(plan.skips.back());
+  }
   if (scene.pixels.size() < static_cast<std::size_t>(scene.source->pixels())) {
     plan.skips.push_back(
         fmt::format("{}: {} of {} pixels are measured, as asked", name, scene.pixels.size(), scene.source->pixels()));
@@ -222,6 +228,11 @@ double Plan::evaluations() const {
            static_cast<double>(unit.replicate_count);
   }
   return sum;
+}
+
+bool has_infinite_variance(const IntegralSource& source) {
+  const std::optional<double> variance = source.variance();
+  return variance && std::isinf(*variance);
 }
 
 std::string cell_name(const Plan& plan, const Cell& cell) {

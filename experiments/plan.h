@@ -82,6 +82,10 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue);
 std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, const Layout& layout,
                             std::uint64_t samples);
 
+/// Whether the variance of the scene's integrand is known to be infinite: no squared error of an estimate has an
+/// expectation then, and no rate.
+bool has_infinite_variance(const IntegralSource& source);
+
 /// "aligned-phong-cap:n=10,alpha=0.05,balance,halton-owen,f64,64": a cell in messages, and what seeds its bootstrap.
 std::string cell_name(const Plan& plan, const Cell& cell);
 

@@ -130,6 +130,13 @@ RateResult fit_line(const Plan& plan, std::span<const Reference> references, std
     // One number at each N not because there was one replicate: they are not kept, so there is no interval.
     rate.fit.status.replace(mark, std::string("deterministic").size(), "many-replicates");
   }
+  if (has_infinite_variance(*plan.scenes[first.scene].source)) {
+    // The slope would be that of the largest values that happened to be met.
+    rate.fit.rate.reset();
+    rate.fit.interval.reset();
+    rate.fit.status = rate.fit.status.starts_with("invalid") ? "invalid;infinite-variance" : "infinite-variance";
+    return rate;
+  }
   for (const SamplerInfo& info : samplers.list()) {
     if (info.name == first.sampler) rate.theory = info.rate;
   }

@@ -1,4 +1,4 @@
-// Analytic scenes: an integrand on [0,1]^d as a scene of one pixel, with its exact integral.
+// Analytic scenes: an integrand on [0,1]^d as a scene of one pixel, with its exact integral and variance.
 #pragma once
 
 #include <memory>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/integral.h"
+#include "scenes/integrand_table.h"
 #include "scenes/kernels.h"
 
 namespace halfslope {
@@ -13,33 +14,33 @@ namespace halfslope {
 /// An analytic scene of one pixel and one channel whose integrand is a kernel.
 class AnalyticSource final : public IntegralSource {
  public:
-  /// `kernel` names an entry of IntegrandKernels; `fingerprint` is the scene's full name, parameters included.
-  AnalyticSource(const std::string& kernel, std::vector<double> parameters, std::vector<Technique> techniques,
-                 double exact, std::string fingerprint);
+  /// `fingerprint` is the scene's full name, parameters included.
+  AnalyticSource(Integrand integrand, std::string fingerprint);
 
-  std::span<const Technique> techniques() const override { return techniques_; }
+  std::span<const Technique> techniques() const override { return integrand_.techniques; }
   PixelIntegral pixel(int index) const override;
-  std::optional<Color> closed_form(int) const override { return Color{exact_, exact_, exact_}; }
+  std::optional<Color> closed_form(int) const override {
+    return Color{integrand_.integral, integrand_.integral, integrand_.integral};
+  }
+  std::optional<double> variance() const override { return integrand_.variance; }
   std::string fingerprint() const override { return fingerprint_; }
 
  private:
+  Integrand integrand_;
   IntegrandKernel kernel_;
-  std::vector<double> parameters_;
-  std::vector<Technique> techniques_;
-  double exact_;
   std::string fingerprint_;
-};
-
-/// What the catalogue says of an analytic scene.
-struct IntegrandInfo {
-  std::string name, parameters, description, reference;
 };
 
 /// The analytic scenes there are.
 std::vector<IntegrandInfo> analytic_scenes();
 
-/// The analytic scene of that name, which may carry parameters: "aligned-phong-cap:n=1000,alpha=0.05". Null where the
-/// name before ':' is none; Error(kBadInput) for parameters that are unknown, missing or out of range.
+/// The name that `analytic_scenes` has for one spelled with underscores, and with its dimensions or its side at the
+/// end: "sobol_g_d4" is "sobol-g:d=4", "halfspace3_irr" "halfspace:d=3". Other names come back as they are.
+std::string analytic_scene_name(const std::string& name);
+
+/// The analytic scene of that name, in either spelling, which may carry parameters:
+/// "aligned-phong-cap:n=1000,alpha=0.05". Null where the name before ':' is none; Error(kBadInput) for parameters that
+/// are unknown, missing or out of range.
 std::unique_ptr<IntegralSource> make_analytic_scene(const std::string& name);
 
 }  // namespace halfslope

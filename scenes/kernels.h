@@ -6,12 +6,16 @@
 
 namespace halfslope {
 
+/// No integrand has more dimensions.
+inline constexpr int kMostIntegrandDims = 64;
+
 /// One sample of `technique` at each of `count` points (a multiple of kLanes): `high[d]` and `low[d]` (the array of low
-/// words may be null) are the technique's own dimensions; value receives f/p, pdfs[k] the density of technique set[k].
+/// words may be null) are the technique's own `dims` dimensions; value receives f/p, pdfs[k] the density of technique
+/// set[k].
 template <class T>
 struct IntegrandCall {
   const double* parameters;
-  int technique;
+  int technique, dims;
   const std::uint32_t* const* high;
   const std::uint32_t* const* low;
   std::size_t count;
@@ -30,9 +34,15 @@ struct IntegrandKernel {
   EvaluateIntegrand<double> f64;
 };
 
+/// The kernels of one file.
+struct IntegrandFamily {
+  const IntegrandKernel* integrands;
+  std::size_t count;
+};
+
 struct IntegrandKernels {
   static constexpr const char* kSymbol = "halfslope_integrand_kernels";
-  const IntegrandKernel* integrands;
+  const IntegrandFamily* families;
   std::size_t count;
 };
 

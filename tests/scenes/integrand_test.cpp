@@ -145,6 +145,11 @@ TEST(AnalyticScenes, NamesAndParameters) {
   for (const char* alpha : {"0", "-1", "1.6"}) {
     EXPECT_THAT(error_of("aligned-phong-cap:n=1,alpha=" + std::string(alpha)), HasSubstr("in (0, pi/2]"));
   }
+  for (const char* r : {"0", "-0.1", "0.6"}) {
+    EXPECT_THAT(error_of("ball:d=2,r=" + std::string(r)), HasSubstr("in (0, 0.5]; found " + std::string(r)));
+  }
+  EXPECT_THAT(error_of("checker:n=1"), HasSubstr("n must be a whole number from 2 to 1024, found 1"));
+  EXPECT_THAT(error_of("sobol-g:d=65"), HasSubstr("d must be a whole number from 1 to 64, found 65"));
   EXPECT_EQ(error_of("quarterdisk:n=1"), "scene 'quarterdisk:n=1': it takes no parameters");
   EXPECT_EQ(error_of("stepx:"), "scene 'stepx:': nothing stands after ':'");
   EXPECT_EQ(error_of("halfspace:d=2,"), "scene 'halfspace:d=2,': nothing stands after the last ','");
@@ -164,11 +169,15 @@ TEST(AnalyticScenes, AreOnePixelOfOneChannel) {
   for (const IntegrandInfo& info : analytic_scenes()) {
     EXPECT_FALSE(info.description.empty() || info.reference.empty()) << info.name;
     std::string name = info.name;
-    if (info.parameters.starts_with("n=")) name += ":n=3,alpha=0.5";
+    if (info.parameters == "n=SIDE") name += ":n=3";
+    if (info.parameters.starts_with("n=EXPONENT")) name += ":n=3,alpha=0.5";
     if (info.parameters.starts_with("d=")) name += ":d=5";
     const auto scene = make_analytic_scene(name);
     ASSERT_TRUE(scene) << name;
     EXPECT_EQ(scene->fingerprint(), name);
+    EXPECT_EQ(info.integral.has_value(), info.parameters.empty());
+    if (info.integral) EXPECT_EQ((*scene->closed_form(0))[0], *info.integral);
+    if (info.parameters.empty()) EXPECT_EQ(scene->variance(), info.variance);
     EXPECT_EQ(scene->pixels(), 1);
     EXPECT_EQ(scene->channels(), 1);
     EXPECT_TRUE(scene->closed_form(0).has_value());
