@@ -79,8 +79,11 @@ void write_cell_image(const std::filesystem::path& folder, const Plan& plan, con
   const auto bias = [&](std::size_t i) { return folded.integrals[i].mean - reference.value[i]; };
   Layers layers(*scene.source);
   layers.add("", [&](std::size_t i) { return folded.integrals[i].mean; });
-  if (folded.data.replicates > 1) layers.add("variance", [&](std::size_t i) { return folded.integrals[i].variance(); });
-  layers.add("mse", [&](std::size_t i) { return folded.integrals[i].m2() + bias(i) * bias(i); });
+  if (!folded.data.infinite_variance) {
+    if (folded.data.replicates > 1)
+      layers.add("variance", [&](std::size_t i) { return folded.integrals[i].variance(); });
+    layers.add("mse", [&](std::size_t i) { return folded.integrals[i].m2() + bias(i) * bias(i); });
+  }
   layers.add("bias", bias);
   const auto path = folder / "images" / path_component(scene.name) / to_string(cell.precision) /
                     path_component(scene.estimators[cell.estimator].name) / path_component(cell.sampler);

@@ -180,5 +180,28 @@ TEST(Summarise, NonFiniteEstimatesMakeTheCellInvalidAndItsNumbersEmpty) {
   }
 }
 
+// Squared errors without an expectation are not reported; what has one is.
+TEST(CellStatistics, InfiniteVarianceLeavesOnlyWhatExists) {
+  CellData data = build_cell(normal_estimates(64, kReference, 0.1, 8), kReference, kExact);
+  const CellStatistics before = summarise(data);
+  data.infinite_variance = true;
+  CellStatistics row = summarise(data);
+  EXPECT_EQ(row.status, "infinite-variance");
+  for (const auto& number : {row.variance, row.rmse, row.rmse_lo, row.rmse_hi, row.relmse, row.relmse_lo, row.relmse_hi,
+                             row.kurtosis, row.bias_se})
+    EXPECT_FALSE(number);
+  EXPECT_EQ(row.mean, before.mean);
+  EXPECT_EQ(row.bias, before.bias);
+  EXPECT_EQ(row.mae, before.mae);
+  EXPECT_EQ(row.median_abs_error, before.median_abs_error);
+  EXPECT_FALSE(row.invalid);
+  data.deterministic = true;
+  row = summarise(data);
+  EXPECT_EQ(row.status, "infinite-variance;deterministic");
+  EXPECT_EQ(row.bias_se, 0.0);
+  data.nonfinite = 1;
+  EXPECT_EQ(summarise(data).status, "invalid;infinite-variance;deterministic");
+}
+
 }  // namespace
 }  // namespace halfslope
