@@ -12,7 +12,7 @@
 namespace halfslope {
 
 /// An analytic scene whose pixels integrate f over [0,1)^d, with the estimator `mean`. A kernel
-/// (scenes/integrands.kernel.cpp) is many times faster; this takes any code.
+/// (scenes/integrands_*.kernel.cpp) is many times faster; this takes any code.
 ///
 ///   FunctionSource("ridge", 2, [](std::span<const double> x, int) { return std::fabs(x[0] - x[1]); }, 1.0 / 3)
 class FunctionSource final : public IntegralSource {
