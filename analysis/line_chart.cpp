@@ -1,0 +1,276 @@
+#include "analysis/line_chart.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/palette.h"
+#include "analysis/text_fit.h"
+#include "analysis/typeface.h"
+#include "core/numbers.h"
+
+namespace halfslope {
+namespace {
+
+constexpr double kSample = 18;  // of a line in the legend
+constexpr double kBandOpacity = 0.2;
+constexpr std::size_t kMarkersOfCurve = 7;
+
+/// The least and the greatest of some values.
+struct Range {
+  double lo = std::numeric_limits<double>::infinity(), hi = -std::numeric_limits<double>::infinity();
+  void add(double x) {
+    lo = std::min(lo, x);
+    hi = std::max(hi, x);
+  }
+  bool empty() const { return !(lo <= hi); }
+};
+
+bool drawn(const ChartPoint& p, const ChartStyle& style) { return std::isfinite(p.y) && (!style.log || p.y > 0); }
+
+bool power_of_two(double x) { return x >= 1 && std::exp2(std::round(std::log2(x))) == x; }
+
+Axis log_x_axis(const Range& range, bool powers_of_two, const std::string& label) {
+  const double pad = range.hi > range.lo ? std::pow(range.hi / range.lo, 0.05) : 2;
+  Axis axis{{true, range.lo / pad, range.hi * pad}, {}, label};
+  axis.ticks = log_ticks(axis.scale.lo, axis.scale.hi, powers_of_two && range.hi > range.lo ? 2 : 10, 6);
+  if (axis.scale.hi < 20000) {  // short enough to be written out
+    for (Tick& tick : axis.ticks) {
+      if (!tick.label.empty()) tick.label = format_number(std::round(tick.value * 1e6) / 1e6);
+    }
+  }
+  return axis;
+}
+
+Axis log_y_axis(Range points, const Range& ends, const std::string& label) {
+  if (!ends.empty()) {
+    const Range alone = points;
+    points.add(std::max(ends.lo, alone.lo / 4));
+    points.add(std::min(ends.hi, alone.hi * 4));
+  }
+  const double pad = std::max(1.5, std::pow(points.hi / points.lo, 0.06));
+  Axis axis{{true, points.lo / pad, points.hi * pad}, {}, label};
+  axis.ticks = log_ticks(axis.scale.lo, axis.scale.hi, 10, 6);
+  return axis;
+}
+
+Axis linear_y_axis(Range range, const Range& ends, const ChartStyle& style) {
+  for (const double end : {ends.lo, ends.hi}) {
+    if (!ends.empty()) range.add(end);
+  }
+  if (style.level) range.add(*style.level);
+  const double span = range.hi > range.lo ? range.hi - range.lo : 1;
+  const double lo = style.y_least.value_or(range.lo - 0.06 * span), hi = std::min(range.hi + 0.06 * span, style.y_most);
+  Axis axis{{false, lo, hi}, {}, style.y_label};
+  axis.ticks = linear_ticks(lo, hi, 7);
+  return axis;
+}
+
+double middle(double lo, double hi, double at) { return lo + (hi - lo) * at; }
+
+/// A line through points of the canvas, without what lies above `top` or below `bottom`, and with gaps where y is NaN.
+void draw_cut_line(Canvas& canvas, const std::vector<Position>& points, double top, double bottom,
+                   const Stroke& stroke) {
+  std::vector<Position> piece;
+  const auto end_piece = [&] {
+    if (piece.size() > 1) canvas.line(piece, stroke);
+    piece.clear();
+  };
+  for (std::size_t k = 0; k + 1 < points.size(); ++k) {
+    const Position &a = points[k], &b = points[k + 1];
+    // The part of a … b between the two heights, as fractions of the way.
+    double from = 0, to = 1;
+    const double rise = b.y - a.y;
+    if (std::isnan(rise)) {
+      end_piece();
+      continue;
+    }
+    for (const double edge : {top, bottom}) {
+      const double inside = edge == top ? 1 : -1, da = inside * (a.y - edge), db = inside * (b.y - edge);
+      if (da < 0 && db < 0) to = -1;
+      if (da < 0 && db >= 0) from = std::max(from, (edge - a.y) / rise);
+      if (da >= 0 && db < 0) to = std::min(to, (edge - a.y) / rise);
+    }
+    if (!(from <= to)) {
+      end_piece();
+      continue;
+    }
+    if (from > 0) end_piece();
+    const auto at = [&](double t) {
+      return Position{middle(a.x, b.x, t), t == 0 ? a.y : t == 1 ? b.y : a.y + rise * t};
+    };
+    if (piece.empty()) piece.push_back(at(from));
+    piece.push_back(at(to));
+    if (to < 1) end_piece();
+  }
+  end_piece();
+}
+
+/// Bars and caps of the points' intervals, cut where the frame ends.
+void draw_bars(Canvas& canvas, const Axes& axes, const ChartLine& line, const ChartStyle& style, const Stroke& stroke) {
+  const double lowest = axes.y.scale.lo, highest = axes.y.scale.hi;
+  for (const ChartPoint& p : line.points) {
+    if (!p.hi || !drawn(p, style)) continue;
+    const double lo = std::max(p.lo.value_or(lowest), lowest), hi = std::min(*p.hi, highest);
+    const Position low = axes.at(p.x, lo), high = axes.at(p.x, hi);
+    canvas.line({low, high}, stroke);
+    for (const auto& [end, cut] : {std::pair(low, !p.lo || *p.lo < lowest), std::pair(high, *p.hi > highest)}) {
+      if (!cut) canvas.line({{end.x - 1.5, end.y}, {end.x + 1.5, end.y}}, stroke);
+    }
+  }
+}
+
+/// The area between the intervals' ends, a polygon for each run of points that have one.
+void draw_bands(Canvas& canvas, const Axes& axes, const ChartLine& line, const ChartStyle& style, const Ink& ink) {
+  std::vector<Position> above, below;
+  const auto end_band = [&] {
+    if (above.size() > 1) {
+      above.insert(above.end(), below.rbegin(), below.rend());
+      canvas.polygon(above, {.fill = ink, .opacity = kBandOpacity});
+    }
+    above.clear(), below.clear();
+  };
+  const auto inside = [&](double y) { return std::clamp(y, axes.y.scale.lo, axes.y.scale.hi); };
+  for (const ChartPoint& p : line.points) {
+    if (p.lo && p.hi && drawn(p, style)) {
+      above.push_back(axes.at(p.x, inside(*p.hi)));
+      below.push_back(axes.at(p.x, inside(*p.lo)));
+    } else {
+      end_band();
+    }
+  }
+  end_band();
+}
+
+void draw_line(Canvas& canvas, const Axes& axes, const ChartStyle& style, const ChartLine& line) {
+  const Look& look = looks()[line.look];
+  const double top = axes.top_left.y, bottom = top + axes.height;
+  const bool curve = style.intervals == Intervals::kBands;
+  canvas.begin_group(line.name);
+  std::vector<Position> points;
+  for (const ChartPoint& p : line.points) {
+    points.push_back(axes.at(p.x, drawn(p, style) ? p.y : std::numeric_limits<double>::quiet_NaN()));
+  }
+  if (curve) draw_bands(canvas, axes, line, style, look.ink);
+  draw_cut_line(canvas, points, top, bottom, {look.ink, 0.9, look.dashes});
+  if (!curve) draw_bars(canvas, axes, line, style, {look.ink, 0.5});
+  // Of a curve, each line marks points of its own, so that markers of lines that run together lie side by side.
+  const std::size_t step = curve ? std::max<std::size_t>(1, points.size() / kMarkersOfCurve) : 1;
+  for (std::size_t k = step * (2 * line.look + 1) / (2 * looks().size()); k < points.size(); k += step) {
+    if (points[k].y >= top && points[k].y <= bottom) draw_marker(canvas, points[k], 1.7, look, line.points[k].hollow);
+  }
+  canvas.end_group();
+}
+
+void draw_guides(Canvas& canvas, const Axes& axes, const LineChart& chart) {
+  Range first, samples;
+  for (const ChartLine& line : chart.lines) {
+    for (const ChartPoint& p : line.points) samples.add(p.x);
+    const auto begin = std::find_if(line.points.begin(), line.points.end(),
+                                    [&](const ChartPoint& p) { return drawn(p, chart.style); });
+    if (begin != line.points.end()) first.add(begin->y);
+  }
+  // From above the first points, so that they run beside the lines.
+  const double start = first.empty() ? axes.y.scale.hi : 1.25 * first.hi;
+  for (const double slope : chart.style.slopes) {
+    const std::string label = slope == -0.5    ? "½"
+                              : slope == -0.75 ? "¾"
+                              : slope == -1.5  ? "3/2"
+                                               : format_number(-slope);
+    draw_slope_guide(canvas, axes, samples.lo, start, slope, "\u2212" + label);
+  }
+}
+
+void draw_x_above(Canvas& canvas, const Axes& axes, const Axis& above) {
+  const double top = axes.top_left.y;
+  for (const Tick& tick : above.ticks) {
+    const double px = axes.top_left.x + axes.width * above.scale.fraction(tick.value);
+    canvas.line({{px, top - 3}, {px, top}}, {kBlack, 0.6});
+    canvas.text({px, top - 4.5}, tick.label, {.size = kSmallSize, .anchor = Anchor::kMiddle});
+  }
+  canvas.text({axes.top_left.x + axes.width / 2, top - 13}, above.label,
+              {.size = kLabelSize, .anchor = Anchor::kMiddle});
+}
+
+}  // namespace
+
+std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const std::string& group) {
+  Range x, y, ends;
+  bool powers = true;
+  const ChartStyle* style = nullptr;
+  for (const LineChart& chart : charts) {
+    if (chart.group != group) continue;
+    style = &chart.style;
+    for (const ChartLine& line : chart.lines) {
+      for (const ChartPoint& p : line.points) {
+        if (!drawn(p, *style)) continue;
+        x.add(p.x);
+        y.add(p.y);
+        powers = powers && power_of_two(p.x);
+        for (const auto& end : {p.lo, p.hi}) {
+          if (end && std::isfinite(*end) && (!style->log || *end > 0)) ends.add(*end);
+        }
+      }
+    }
+  }
+  if (x.empty()) return std::nullopt;
+  if (style->log) return ChartScales{log_x_axis(x, powers, style->x_label), log_y_axis(y, ends, style->y_label), {}};
+  Axis axis{{false, 0, x.hi}, linear_ticks(0, x.hi, 7), style->x_label};
+  std::optional<Axis> above;
+  if (!style->x_above_label.empty()) {
+    const double hi = x.hi / style->x_above_unit;
+    above = Axis{{false, 0, hi}, linear_ticks(0, hi, 7), style->x_above_label};
+  }
+  return ChartScales{axis, linear_y_axis(y, ends, *style), above};
+}
+
+double height_above(const ChartStyle& style) { return style.x_above_label.empty() ? 0 : kHeightOfXAxis - 2; }
+
+void draw_chart(Canvas& canvas, const Axes& axes, const std::optional<Axis>& x_above, const LineChart& chart) {
+  axes.draw_grid(canvas);
+  if (chart.style.level) {
+    canvas.line({axes.at(axes.x.scale.lo, *chart.style.level), axes.at(axes.x.scale.hi, *chart.style.level)},
+                {kInkGrey, 0.8});
+  }
+  draw_guides(canvas, axes, chart);
+  axes.draw_frame(canvas);
+  if (x_above) draw_x_above(canvas, axes, *x_above);
+  for (const ChartLine& line : chart.lines) draw_line(canvas, axes, chart.style, line);
+}
+
+double legend_width(const LineChart& chart) {
+  double label = 0, note = 0;
+  for (const ChartLine& line : chart.lines) {
+    label = std::max(label, text_width(line.label, kSmallSize));
+    note = std::max(note, text_width(line.note, kSmallSize));
+  }
+  return kSample + 3 + label + 4 + note + 1;
+}
+
+void draw_legend(Canvas& canvas, const LineChart& chart, Position at, double width, const std::string& notes_title) {
+  if (!notes_title.empty())
+    canvas.text({at.x + width, at.y}, notes_title, {.size = kSmallSize, .anchor = Anchor::kEnd, .ink = kInkGrey});
+  for (const ChartLine& line : chart.lines) {
+    at.y += kLegendLine;
+    const Look& look = looks()[line.look];
+    const double y = at.y - 0.36 * kSmallSize;
+    canvas.line({{at.x, y}, {at.x + kSample, y}}, {look.ink, 0.9, look.dashes});
+    draw_marker(canvas, {at.x + kSample / 2, y}, 1.7, look);
+    const double note_width = line.note.empty() ? 0 : text_width(line.note, kSmallSize) + 4;
+    canvas.text({at.x + kSample + 3, at.y}, fitted(line.label, kSmallSize, width - kSample - 3 - note_width),
+                {.size = kSmallSize});
+    canvas.text({at.x + width, at.y}, line.note, {.size = kSmallSize, .anchor = Anchor::kEnd});
+  }
+}
+
+std::string slope_note(double slope, const std::optional<Interval>& interval) {
+  const auto number = [](double x) {
+    const std::string text = fmt::format("{:.2f}", x);
+    return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
+  };
+  if (!interval) return number(slope);
+  return fmt::format("{} [{}, {}]", number(slope), number(interval->lo), number(interval->hi));
+}
+
+}  // namespace halfslope
