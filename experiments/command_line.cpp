@@ -194,12 +194,17 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
            {"--run", "convergence: the run folder to draw"},
            {"--scene", "veach, glossy: which scene; convergence: only these scenes"},
            {"--estimators,--estimator", "veach, glossy: a picture each; convergence: only these"},
-           {"--samplers,--sampler", "veach, points, glossy: a picture each; convergence: only these"},
+           {"--samplers,--sampler", "a picture, a panel or a line each; convergence: only these"},
            {"--precision", "convergence: only f32 or f64"},
-           {"--samples", "veach, glossy: N a pixel; points: how many points"},
+           {"--samples", "N a pixel, or how many points; discrepancy: 16:4096 for powers of two, or a list"},
            {"--resolution", "veach, glossy: WIDTH,HEIGHT of each picture"},
            {"--exposure", "veach, glossy: radiance is multiplied by 2^STOPS (default 0)"},
-           {"--seed", "veach, points, glossy: of the random numbers (default 1)"},
+           {"--axes", "points: which two dimensions, such as 4,5 (default 0,1)"},
+           {"--dims", "discrepancy, pcf: dimensions (default 2)"},
+           {"--measures",
+            "discrepancy: a diagram each (default star); spectrum, radial-spectrum, pcf: with parameters"},
+           {"--replicates", "discrepancy, spectrum, radial-spectrum, pcf: randomisations"},
+           {"--seed", "of the random numbers (default 1)"},
            {"--replicate", "veach, points, glossy: which randomisation (default 0)"}}) {
     const std::string key = spelling.substr(2, spelling.find(',') - 2);
     figure_app
@@ -207,9 +212,16 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
             spelling, [&figure, key](const std::string& value) { figure.keys[key] = value; }, help)
         ->type_name("VALUE");
   }
-  figure_app
-      ->add_option("--threads", figure.threads,
-                   "veach, glossy: threads; the figure does not depend on it (default: all cores)")
+  figure_app->add_option("--points", figure.files, "files of points beside the --samplers, a line each")
+      ->type_name("FILE");
+  const auto add_switch = [&](const std::string& key, const char* help) {
+    return figure_app->add_flag_callback(
+        "--" + key, [&figure, key] { figure.keys[key] = ""; }, help);
+  };
+  add_switch("wrap", "take points of files outside [0,1) modulo 1")
+      ->excludes(add_switch("clamp", "move points of files outside [0,1) to its nearest end"));
+  add_switch("side-by-side", "radial-spectrum, pcf: a diagram for each sampler");
+  figure_app->add_option("--threads", figure.threads, "threads; the figure does not depend on it (default: all cores)")
       ->check(CLI::Range(1, 4096));
   figure_app->add_flag("--quiet", figure.quiet, "no progress");
 

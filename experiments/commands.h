@@ -73,7 +73,8 @@ int reference_command(const ReferenceArguments& arguments, const Catalogue& cata
 
 struct FigureArguments {
   std::string name, out;                    ///< out: NAME.png where empty
-  std::map<std::string, std::string> keys;  ///< flags that belong to some of the figures
+  std::map<std::string, std::string> keys;  ///< flags that belong to some of the figures; switches have empty values
+  std::vector<std::string> files;           ///< of points
   int threads = 0;
   bool quiet = false;
 };

@@ -1,5 +1,6 @@
 // figure: draws a page and writes it.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include "core/error.h"
 #include "experiments/commands.h"
 #include "experiments/figures.h"
+#include "experiments/fold.h"
 #include "experiments/interrupt.h"
 #include "experiments/joined.h"
 #include "experiments/message.h"
@@ -15,6 +17,8 @@
 
 namespace halfslope {
 namespace {
+
+constexpr int kMostDims = 1 << 16;
 
 const FigureInfo& find_figure(const std::vector<FigureInfo>& figures, const std::string& name) {
   std::vector<std::string> names;
@@ -45,6 +49,46 @@ bool takes(const FigureInfo& figure, const std::string& flag) {
   fail(ExitCode::kUsage, "--{}: the figure '{}' does not take it; allowed: {}", flag, figure.name, allowed);
 }
 
+/// "4,5": two different dimensions.
+std::array<int, 2> parse_axes(const std::string& text) {
+  const std::size_t comma = std::min(text.find(','), text.size());
+  const char* allowed = "two different dimensions counted from 0, such as 4,5";
+  std::array<int, 2> axes = {parse_number<int>("axes", text.substr(0, comma), allowed),
+                             parse_number<int>("axes", text.substr(std::min(comma + 1, text.size())), allowed)};
+  if (std::min(axes[0], axes[1]) < 0 || std::max(axes[0], axes[1]) >= kMostDims || axes[0] == axes[1])
+    fail(ExitCode::kUsage, "--axes: found '{}'; allowed: {}, below {}", text, allowed, kMostDims);
+  return axes;
+}
+
+template <class T>
+T parse_within(const std::string& key, const std::string& text, T least, T most) {
+  const std::string allowed = fmt::format("an integer from {} to {}", least, most);
+  const T value = parse_number<T>(key, text, allowed.c_str());
+  if (value < least || value > most) fail(ExitCode::kUsage, "--{}: found '{}'; allowed: {}", key, text, allowed);
+  return value;
+}
+
+void apply_key(FigureRequest& request, const std::string& key, const std::string& value) {
+  if (key == "run") {
+    request.run = value;
+  } else if (key == "replicate") {
+    request.replicate = parse_number<std::uint32_t>(key, value, "an integer from 0 to 2^32 - 1");
+  } else if (key == "replicates") {
+    request.replicates = parse_within<std::int64_t>(key, value, 1, kMostKept);
+  } else if (key == "dims") {
+    request.dims = parse_within(key, value, 1, kMostDims);
+  } else if (key == "axes") {
+    request.axes = parse_axes(value);
+  } else if (key == "side-by-side") {
+    request.side_by_side = true;
+  } else if (key == "exposure") {
+    request.exposure = parse_number<double>(key, value, "a number of stops");
+    if (!(std::fabs(*request.exposure) <= 64)) fail(ExitCode::kUsage, "--exposure: from -64 to 64, found {}", value);
+  } else if (key != "wrap" && key != "clamp") {
+    apply_flag(request.spec, key, value);
+  }
+}
+
 FigureRequest parse_request(const FigureArguments& a, const FigureInfo& figure) {
   FigureRequest request;
   request.name = a.name;
@@ -52,20 +96,18 @@ FigureRequest parse_request(const FigureArguments& a, const FigureInfo& figure) 
   request.quiet = a.quiet;
   request.spec.precision.clear();
   if (a.threads != 0 && !takes(figure, "threads")) refuse("threads", figure);
+  if (!a.files.empty() && !takes(figure, "points")) refuse("points", figure);
   for (const auto& [key, value] : a.keys) {
     if (!takes(figure, key)) refuse(key, figure);
-    if (key == "run") {
-      request.run = value;
-    } else if (key == "replicate") {
-      request.replicate = parse_number<std::uint32_t>(key, value, "an integer from 0 to 2^32 - 1");
-    } else if (key == "exposure") {
-      request.exposure = parse_number<double>(key, value, "a number of stops");
-      if (!(std::fabs(*request.exposure) <= 64)) fail(ExitCode::kUsage, "--exposure: from -64 to 64, found {}", value);
-    } else {
-      apply_flag(request.spec, key, value);
-    }
+    apply_key(request, key, value);
   }
-  if (request.spec.samples.counts.size() > 1) fail(ExitCode::kUsage, "--samples: one N at a time");
+  const bool wrap = a.keys.contains("wrap"), clamp = a.keys.contains("clamp");
+  if ((wrap || clamp) && a.files.empty())
+    fail(ExitCode::kUsage, "--{}: is about the points of --points FILE", wrap ? "wrap" : "clamp");
+  for (const std::string& file : a.files)
+    request.spec.samplers.push_back((wrap ? "file-wrap:" : clamp ? "file-clamp:" : "file:") + file);
+  if (request.spec.samples.counts.size() > 1 && !figure.several_counts)
+    fail(ExitCode::kUsage, "--samples: one N at a time");
   return request;
 }
 
@@ -86,7 +128,7 @@ std::vector<FigureInfo> figure_catalogue() {
       {"points",
        "the first N points of each sampler in the unit square",
        "Shirley, Discrepancy as a Quality Measure for Sample Distributions, Eurographics 1991",
-       {"samplers", "samples", "seed", "replicate"},
+       {"samplers", "points", "wrap", "clamp", "samples", "axes", "seed", "replicate"},
        draw_points_figure},
       {"glossy",
        "a glossy reflection by each sampler at equal N, with a part magnified",
@@ -98,6 +140,28 @@ std::vector<FigureInfo> figure_catalogue() {
        "docs/columns.md",
        {"run", "scene", "estimators", "samplers", "precision"},
        draw_convergence_figure},
+      {"discrepancy",
+       "discrepancies of each sampler's points against N, with intervals, slopes and slope guides",
+       "Shirley, Discrepancy as a Quality Measure for Sample Distributions, Eurographics 1991",
+       {"samplers", "points", "wrap", "clamp", "samples", "dims", "measures", "replicates", "seed", "threads"},
+       draw_discrepancy_figure,
+       true},
+      {"spectrum",
+       "the power spectrum of each sampler's points as a picture",
+       "Ulichney, Dithering with Blue Noise, Proc. IEEE 76(1), 1988",
+       {"samplers", "points", "wrap", "clamp", "samples", "measures", "replicates", "seed", "threads"},
+       draw_spectrum_figure},
+      {"radial-spectrum",
+       "mean power of each sampler's points at each frequency; also anisotropy",
+       "Ulichney, Dithering with Blue Noise, Proc. IEEE 76(1), 1988",
+       {"samplers", "points", "wrap", "clamp", "samples", "measures", "replicates", "seed", "side-by-side", "threads"},
+       draw_radial_spectrum_figure},
+      {"pcf",
+       "pair correlation of each sampler's points against distance",
+       "Stoyan, Kendall & Mecke, Stochastic Geometry and its Applications, 1995, section 4.5",
+       {"samplers", "points", "wrap", "clamp", "samples", "dims", "measures", "replicates", "seed", "side-by-side",
+        "threads"},
+       draw_pair_correlation_figure},
   };
 }
 

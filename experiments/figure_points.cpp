@@ -7,52 +7,61 @@
 #include "analysis/text_fit.h"
 #include "core/error.h"
 #include "experiments/command_flags.h"
+#include "experiments/figure_samplers.h"
 #include "experiments/figures.h"
+#include "experiments/panel_grid.h"
 #include "samplers/stratified.h"
+#include "scenes/pairs.h"
 
 namespace halfslope {
 namespace {
 
-constexpr double kMargin = 22, kGap = 12, kHeader = 25, kFooter = 16;
+constexpr double kCaptionLine = 9;
+constexpr std::size_t kMostPanels = 24;
+constexpr std::uint64_t kMostPoints = 1 << 16;
 
 struct Panel {
   SamplerInfo info;
   std::vector<Position> points;  ///< in the unit square, y upwards
+  Grid strata;                   ///< 1 × 1 where there are none
 };
 
-std::string nearest_counts(const LegalNeighbours& neighbours) {
-  std::string text;
-  for (const auto& n : {neighbours.below, neighbours.above}) {
-    if (n) text += (text.empty() ? "" : " and ") + std::to_string(*n);
-  }
-  return text;
+/// The strata that hold one point each, in the two dimensions that are drawn.
+Grid strata_of(const SamplerInfo& info, std::uint64_t count, std::array<int, 2> axes) {
+  const std::string& name = info.name;
+  if (name == "n-rooks") return {count, count};
+  if (name == "orthogonal-array") return squarest_grid(count);
+  const auto [low, high] = std::minmax(axes[0], axes[1]);
+  // The full grid is over all dimensions; those of pairs, over each pair.
+  const bool full = name == "jittered" || name == "regular";
+  const bool paired = name == "stratified" || name == "multi-jittered" || name == "correlated-multi-jittered";
+  if (!(full && high == 1) && !(paired && low % 2 == 0 && high == low + 1)) return {1, 1};
+  const Grid grid = squarest_grid(count);
+  return axes[0] == low ? grid : Grid{grid.rows, grid.columns};
 }
 
-Panel sample(const std::string& name, std::uint64_t count, const FigureRequest& request, const Catalogue& catalogue) {
-  const auto sampler = make_sampler(catalogue, name, "--samplers");
-  check_replicate(sampler->info(), request.replicate);
-  Panel panel{sampler->info(), {}};
-  const Layout layout{{2}};
-  if (panel.info.max_dims < 2) fail(ExitCode::kUsage, "--samplers: '{}' has one dimension; two are drawn", name);
-  if (const auto neighbours = sampler->illegal(count, layout)) {
-    fail(ExitCode::kUsage, "--samples: sampler '{}' cannot make {} points in 2 dimensions; the nearest legal: {}", name,
-         count, nearest_counts(*neighbours));
+Panel sample(const std::string& name, const FigureRequest& request, const Catalogue& catalogue) {
+  const auto sampler = catalogue.samplers.make(name);
+  Panel panel{sampler->info(), {}, {}};
+  const std::uint64_t count = figure_counts(request, panel.info, {{100}, false}).counts.front();
+  if (count > kMostPoints) {
+    fail(ExitCode::kUsage, "--samples: at most {} points can be told apart, found {} of '{}'", kMostPoints, count,
+         name);
   }
+  const Layout layout = pairs(std::max(request.axes[0], request.axes[1]) + 1);
+  check_count(*sampler, count, layout);
+  check_replicate(panel.info, request.replicate);
+  panel.strata = strata_of(panel.info, count, request.axes);
   sampler->prepare({count, &layout, stream_key(request.spec.seed, name, "run"), 0, request.replicate, true});
   PointBlock block;
-  block.reset(2, static_cast<int>(count), true);
+  block.reset(layout.dims(), static_cast<int>(count), true);
   sampler->fill(0, block);
   for (int s = 0; s < block.samples(); ++s)
-    panel.points.push_back({block.coordinate(0, s, 0), block.coordinate(1, s, 0)});
+    panel.points.push_back({block.coordinate(request.axes[0], s, 0), block.coordinate(request.axes[1], s, 0)});
   return panel;
 }
 
-/// Lines between the strata that hold one point each.
-void draw_strata(Canvas& canvas, const Axes& axes, const SamplerInfo& info, std::uint64_t count) {
-  Grid grid{1, 1};
-  if (info.name == "jittered" || info.name == "stratified" || info.name.find("multi-jittered") != std::string::npos)
-    grid = squarest_grid(count);
-  if (info.name == "n-rooks") grid = {count, count};
+void draw_strata(Canvas& canvas, const Axes& axes, const Grid& grid) {
   // Rows and columns of many rooks are a fabric rather than lines.
   const Stroke stroke = {kInkLightGrey, std::min(0.5, 0.12 * axes.width / static_cast<double>(grid.columns))};
   for (std::uint64_t k = 1; k < grid.columns; ++k) {
@@ -66,20 +75,21 @@ void draw_strata(Canvas& canvas, const Axes& axes, const SamplerInfo& info, std:
 }
 
 std::string subtitle(const SamplerInfo& info) {
+  if (info.replicates) return "points from a file";
   if (info.name == "independent") return "uniform random points";
   if (info.name == "jittered" || info.name == "stratified") return "random, one point in each cell";
   if (info.name == "n-rooks") return "random, one point in each row and column";
   return fmt::format("{} {}", info.randomised ? "randomised" : "deterministic", info.sequence ? "sequence" : "set");
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, Position top_left, double side, bool y_labels) {
+void draw_panel(Canvas& canvas, const Panel& panel, Position top_left, double side, bool y_labels, bool tell_count) {
   const std::vector<Tick> ticks = {{0, "0"}, {0.5, "0.5"}, {1, "1"}}, bare = {{0, ""}, {0.5, ""}, {1, ""}};
-  const Axes axes{{top_left.x, top_left.y + kHeader}, side, side, {{}, ticks, ""}, {{}, y_labels ? ticks : bare, ""}};
+  const Axes axes{
+      {top_left.x, top_left.y + kPanelHeader}, side, side, {{}, ticks, ""}, {{}, y_labels ? ticks : bare, ""}};
+  const std::string count = tell_count ? fmt::format("N = {}, ", panel.points.size()) : "";
   canvas.begin_group(panel.info.name);
-  canvas.text({top_left.x, top_left.y + 9}, fitted(sampler_label(panel.info.name), kTitleSize, side, true),
-              {.size = kTitleSize, .bold = true});
-  canvas.text({top_left.x, top_left.y + 19}, subtitle(panel.info), {.size = kSmallSize, .ink = kInkGrey});
-  draw_strata(canvas, axes, panel.info, panel.points.size());
+  draw_panel_titles(canvas, top_left, side, sampler_label(panel.info.name), count + subtitle(panel.info));
+  draw_strata(canvas, axes, panel.strata);
   axes.draw_frame(canvas);
   // Fewer points are drawn larger; a disc has the area of 1/80 of a point's share of the square, within limits.
   const double radius = std::clamp(side / std::sqrt(80.0 * static_cast<double>(panel.points.size())), 0.35, 2.5);
@@ -87,40 +97,40 @@ void draw_panel(Canvas& canvas, const Panel& panel, Position top_left, double si
   canvas.end_group();
 }
 
+std::string caption_of(const std::vector<Panel>& panels, bool same_count, const FigureRequest& request) {
+  const auto& [x, y] = request.axes;
+  std::string caption = x == 0 && y == 1
+                            ? "The first two dimensions"
+                            : fmt::format("Dimensions {} (to the right) and {} (upwards), counted from 0,", x, y);
+  caption += same_count ? fmt::format(" of the first N = {} points of each sampler", panels.front().points.size())
+                        : " of the first N points of each sampler";
+  if (std::ranges::any_of(panels, [](const Panel& panel) { return panel.info.randomised; }))
+    caption += fmt::format("; seed {}, replicate {}", request.spec.seed, request.replicate);
+  return caption + ".";
+}
+
 }  // namespace
 
 Canvas draw_points_figure(const FigureRequest& request, const Catalogue& catalogue) {
-  std::vector<std::string> names = request.spec.samplers;
-  if (names.empty()) names = {"halton", "hammersley", "independent", "jittered", "n-rooks"};
-  const std::uint64_t count = request.spec.samples.counts.empty() ? 100 : request.spec.samples.counts.front();
-  constexpr std::uint64_t kMost = 1 << 16;
-  if (count > kMost) fail(ExitCode::kUsage, "--samples: at most {} points can be told apart, found {}", kMost, count);
+  const std::vector<std::string> names =
+      figure_samplers(request, catalogue, {"halton", "hammersley", "independent", "jittered", "n-rooks"},
+                      std::max(request.axes[0], request.axes[1]) + 1);
+  if (names.size() > kMostPanels)
+    fail(ExitCode::kUsage, "--samplers: at most {} panels, found {}", kMostPanels, names.size());
   std::vector<Panel> panels;
-  for (const std::string& name : names) panels.push_back(sample(name, count, request, catalogue));
+  for (const std::string& name : names) panels.push_back(sample(name, request, catalogue));
+  const bool same_count = std::ranges::all_of(
+      panels, [&](const Panel& panel) { return panel.points.size() == panels.front().points.size(); });
 
-  // Rows of equal length but the first, so that five are two above three.
-  const std::size_t columns = panels.size() == 4 ? 2 : std::min<std::size_t>(panels.size(), 3);
-  const std::size_t rows = (panels.size() + columns - 1) / columns;
-  const double gaps = kGap * static_cast<double>(columns - 1);
-  const double side = std::min(180.0, (kPageWidth - kMargin - 4 - gaps) / static_cast<double>(columns));
-  const double row_height = kHeader + side + 18;
-  Canvas canvas(kPageWidth, static_cast<double>(rows) * row_height + kFooter);
-  std::size_t next = 0;
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t in_row = row == 0 ? panels.size() - (rows - 1) * columns : columns;
-    const double width = static_cast<double>(in_row) * (side + kGap) - kGap;
-    const double left = kMargin + (kPageWidth - kMargin - 4 - width) / 2;
-    for (std::size_t k = 0; k < in_row; ++k) {
-      draw_panel(canvas, panels[next++],
-                 {left + static_cast<double>(k) * (side + kGap), static_cast<double>(row) * row_height}, side, k == 0);
-    }
+  const PanelGrid grid(panels.size(), kPanelHeader, 18);
+  const auto caption = wrapped(caption_of(panels, same_count, request), kSmallSize, kPageWidth);
+  Canvas canvas(kPageWidth, grid.height() + 7 + kCaptionLine * static_cast<double>(caption.size()));
+  for (std::size_t k = 0; k < panels.size(); ++k)
+    draw_panel(canvas, panels[k], grid.top_left(k), grid.side(), grid.begins_row(k), !same_count);
+  for (std::size_t k = 0; k < caption.size(); ++k) {
+    canvas.text({kPageWidth / 2, grid.height() + 10 + kCaptionLine * static_cast<double>(k)}, caption[k],
+                {.size = kSmallSize, .anchor = Anchor::kMiddle, .ink = kInkGrey});
   }
-  const bool randomised =
-      std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.info.randomised; });
-  std::string caption = fmt::format("The first two dimensions of the first N = {} points of each sampler", count);
-  if (randomised) caption += fmt::format("; seed {}, replicate {}", request.spec.seed, request.replicate);
-  canvas.text({kPageWidth / 2, canvas.height() - 6}, caption + ".",
-              {.size = kSmallSize, .anchor = Anchor::kMiddle, .ink = kInkGrey});
   return canvas;
 }
 
