@@ -216,11 +216,14 @@ std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const
   }
   if (x.empty()) return std::nullopt;
   if (style->log) return ChartScales{log_x_axis(x, powers, style->x_label), log_y_axis(y, ends, style->y_label), {}};
-  Axis axis{{false, 0, x.hi}, linear_ticks(0, x.hi, 7), style->x_label};
+  // A scale that ends just short of a round number ends there.
+  double hi = x.hi > 0 ? x.hi : 1;
+  if (const auto ticks = linear_ticks(0, 1.02 * hi, 7); !ticks.empty()) hi = std::max(hi, ticks.back().value);
+  Axis axis{{false, 0, hi}, linear_ticks(0, hi, 7), style->x_label};
   std::optional<Axis> above;
   if (!style->x_above_label.empty()) {
-    const double hi = x.hi / style->x_above_unit;
-    above = Axis{{false, 0, hi}, linear_ticks(0, hi, 7), style->x_above_label};
+    const double end = hi / style->x_above_unit;
+    above = Axis{{false, 0, end}, linear_ticks(0, end, 7), style->x_above_label};
   }
   return ChartScales{axis, linear_y_axis(y, ends, *style), above};
 }

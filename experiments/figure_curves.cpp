@@ -144,7 +144,7 @@ Canvas draw_pair_correlation_figure(const FigureRequest& request, const Catalogu
   const int dims = request.dims.value_or(2);
   const auto requests = requests_of(request, catalogue, dims, [&](double count) {
     const double most = std::min(0.5, 5 / std::pow(count, 1.0 / dims));
-    return figure_measures(request, {"pcf:bins=100,max=" + format_number(most)}, {"pcf"});
+    return figure_measures(request, {"pcf"}, {"pcf"}, "bins=100,max=" + format_number(most));
   });
   const FigureMeasurements measured = measure_for_figure(request, catalogue, requests);
   LinePage page = pair_correlation_page(measured.means, request.side_by_side);
@@ -156,8 +156,8 @@ Canvas draw_pair_correlation_figure(const FigureRequest& request, const Catalogu
 Canvas draw_radial_spectrum_figure(const FigureRequest& request, const Catalogue& catalogue) {
   const auto requests = requests_of(request, catalogue, 2, [&](double count) {
     const int most = static_cast<int>(std::min(512.0, std::ceil(3 * std::sqrt(count))));
-    return figure_measures(request, {fmt::format("radial-spectrum:size={}", 2 * most)},
-                           {"radial-spectrum", "anisotropy"});
+    return figure_measures(request, {"radial-spectrum"}, {"radial-spectrum", "anisotropy"},
+                           fmt::format("size={}", 2 * most));
   });
   const FigureMeasurements measured = measure_for_figure(request, catalogue, requests);
   LinePage page = radial_spectrum_page(measured.means, request.side_by_side);

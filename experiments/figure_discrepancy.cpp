@@ -67,7 +67,7 @@ LinePage discrepancy_page(const std::vector<MeasuredMean>& means, const std::vec
     if (std::ranges::find(points, mean.points) == points.end()) points.push_back(mean.points);
   }
   LinePage page;
-  page.title = names.size() == 1 ? names.front() : "Measures of points";
+  page.title = (names.size() == 1 ? names.front() : "Measures") + " against N";
   page.notes_title = slopes.empty() ? "" : "slope [95 %]";
   page.nothing = "nothing to draw: no value above 0";
   bool intervals = false, left_out = false;
@@ -113,7 +113,7 @@ Canvas draw_discrepancy_figure(const FigureRequest& request, const Catalogue& ca
   MeasuresRequest measures{names,
                            request.spec.samples.counts.empty() ? usual : request.spec.samples,
                            dims,
-                           figure_measures(request, {"star"}, numbers()),
+                           figure_measures(request, {"star"}, numbers(), ""),
                            request.replicates.value_or(kReplicates),
                            request.spec.seed};
   const FigureMeasurements measured = measure_for_figure(request, catalogue, {measures});

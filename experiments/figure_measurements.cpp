@@ -61,11 +61,11 @@ FigureMeasurements measure_for_figure(const FigureRequest& request, const Catalo
   return measured;
 }
 
-std::vector<std::string> figure_measures(const FigureRequest& request, const std::vector<std::string>& usual,
-                                         const std::vector<std::string>& allowed) {
-  if (request.spec.measures.empty()) return usual;
+std::vector<std::string> figure_measures(const FigureRequest& request, std::vector<std::string> usual,
+                                         const std::vector<std::string>& allowed, const std::string& parameters) {
+  std::vector<std::string> names = request.spec.measures.empty() ? std::move(usual) : request.spec.measures;
   std::vector<std::string> heads;
-  for (const std::string& name : request.spec.measures) {
+  for (std::string& name : names) {
     const std::string head(split_name(name).head);
     if (std::ranges::find(allowed, head) == allowed.end()) {
       fail(ExitCode::kUsage, "--measures: the figure '{}' does not draw '{}'; allowed: {}", request.name, name,
@@ -73,8 +73,9 @@ std::vector<std::string> figure_measures(const FigureRequest& request, const std
     }
     if (std::ranges::find(heads, head) != heads.end()) fail(ExitCode::kUsage, "--measures: '{}' once at a time", head);
     heads.push_back(head);
+    if (name == head && !parameters.empty()) name += ":" + parameters;
   }
-  return request.spec.measures;
+  return names;
 }
 
 bool same_count(const std::vector<MeasuredMean>& means) {

@@ -21,10 +21,10 @@ struct FigureMeasurements {
 FigureMeasurements measure_for_figure(const FigureRequest& request, const Catalogue& catalogue,
                                       const std::vector<MeasuresRequest>& requests);
 
-/// --measures, or `usual`. Each must be one of `allowed` (parameters do not matter), and none twice with other
-/// parameters; Error(kUsage) for others.
-std::vector<std::string> figure_measures(const FigureRequest& request, const std::vector<std::string>& usual,
-                                         const std::vector<std::string>& allowed);
+/// --measures, or `usual`; `parameters` are given to those that have none. Error(kUsage) for one that is not among
+/// `allowed` (by name alone), and for one that stands twice.
+std::vector<std::string> figure_measures(const FigureRequest& request, std::vector<std::string> usual,
+                                         const std::vector<std::string>& allowed, const std::string& parameters);
 
 /// "N = 1024, 64 replicates, seed 1": what all means share, as far as they do.
 std::string measured_subtitle(const std::vector<MeasuredMean>& means, std::uint64_t seed);

@@ -105,20 +105,21 @@ void draw_ramp(Canvas& canvas, Position left_baseline) {
 Canvas spectrum_page(const std::vector<MeasuredMean>& means, const std::string& subtitle) {
   const std::vector<Panel> panels = panels_of(means);
   const PanelGrid grid(panels.size(), kPanelHeader, 18);
+  double left = kPageWidth;
+  for (std::size_t k = 0; k < panels.size(); ++k) left = std::min(left, grid.top_left(k).x);
   const auto caption = wrapped(
       "Power |Σ exp(\u22122πi k·x)|²/N at whole frequencies k, the first to the right and the "
       "second upwards; k = 0 is left out. " +
           subtitle + ".",
-      kSmallSize, kPageWidth - 2);
+      kSmallSize, kPageWidth - left - 1);
   Canvas canvas(kPageWidth, grid.height() + 14 + kCaptionLine * static_cast<double>(caption.size() + 1));
   for (std::size_t k = 0; k < panels.size(); ++k)
     draw_panel(canvas, panels[k], grid.top_left(k), grid.side(), grid.begins_row(k));
-  const double left = panels.empty() ? 1 : grid.top_left(panels.size() - 1).x;
   double y = grid.height() + 12;
-  draw_ramp(canvas, {std::min(left, grid.top_left(0).x), y});
+  draw_ramp(canvas, {left, y});
   for (const std::string& line : caption) {
     y += kCaptionLine;
-    canvas.text({std::min(left, grid.top_left(0).x), y}, line, {.size = kSmallSize, .ink = kInkGrey});
+    canvas.text({left, y}, line, {.size = kSmallSize, .ink = kInkGrey});
   }
   return canvas;
 }
@@ -133,7 +134,7 @@ Canvas draw_spectrum_figure(const FigureRequest& request, const Catalogue& catal
     requests.push_back({{name},
                         counts,
                         2,
-                        figure_measures(request, {fmt::format("spectrum:size={}", 2 * most + 1)}, {"spectrum"}),
+                        figure_measures(request, {"spectrum"}, {"spectrum"}, fmt::format("size={}", 2 * most + 1)),
                         request.replicates.value_or(kReplicates),
                         request.spec.seed});
   }

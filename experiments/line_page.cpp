@@ -31,7 +31,7 @@ struct Plan {
     for (const LineChart& chart : charts) {
       most_lines = std::max(most_lines, chart.lines.size());
       if (const auto scales = chart_scales(charts, chart.group)) y_axis = std::max(y_axis, width_of_y_axis(scales->y));
-      header = std::max(header, height_above(chart.style) + (single && chart.title.empty() ? 3 : kPanelHeader));
+      header = std::max(header, height_above(chart.style) + (chart.title.empty() ? 3 : kPanelHeader));
       if (!chart.style.slopes.empty()) right = kGuideMargin;
     }
     const bool beside = single && page.legends;
