@@ -41,23 +41,40 @@ MeasureInfo quadratic(std::string name, std::string description, std::string ref
                          quadratic_discrepancy_refusal);
 }
 
+std::vector<MeasuredValue> net_t_value(const GeneratorMatrices& matrices, std::size_t count) {
+  constexpr double kMostSteps = 3e9;  // about half a minute
+  const TValueBounds t = t_value_bounds(matrices, exponent_of(count, matrices.base).value(), kMostSteps);
+  const bool exact = t.lower == t.upper;
+  return {{static_cast<double>(t.lower), static_cast<double>(t.lower), static_cast<double>(t.upper),
+           exact ? "exact" : "bounds: the search ended early"}};
+}
+
+/// Base 0 stands for that of a sampler's matrices, else for 2.
 MeasureInfo t_value_info() {
   MeasureInfo info = {"t-value",
-                      "smallest t for which base^m points are a (t,m,d)-net; base=2",
+                      "smallest t for which base^m points are a (t,m,d)-net; base 0: the sampler's own, or 2",
                       "H. Niederreiter, \"Point sets and sequences with small discrepancy\", Monatsh. Math. 104, 1987",
                       kAnyDims,
-                      {{"base", 2}},
+                      {{"base", 0}},
                       false,
                       {}};
   info.make = [](const std::string& subject, const Parameters& parameters) {
-    const auto base = static_cast<std::uint32_t>(parameters.whole(subject, "base", 2, 1 << 20));
-    const std::string name = base == 2 ? "t-value" : fmt::format("t-value:base={}", base);
-    return Measure{name, [base](std::size_t count, std::size_t dims) { return t_value_refusal(count, dims, base); },
+    const auto wanted = static_cast<std::uint32_t>(parameters.whole(subject, "base", 0, 1 << 20));
+    if (wanted == 1) fail(ExitCode::kBadInput, "{}: base must be at least 2, or 0 for the sampler's own", subject);
+    const std::uint32_t base = wanted == 0 ? 2 : wanted;
+    const std::string name = wanted == 0 ? "t-value" : fmt::format("t-value:base={}", base);
+    return Measure{name,
+                   [base](std::size_t count, std::size_t dims) { return t_value_refusal(count, dims, base); },
                    [name](std::size_t, std::size_t) { return std::vector{name}; },
                    [base](const PointSet& points) {
                      const double value = t_value(points, base);
                      return std::vector<MeasuredValue>{{value, value, value, "exact"}};
-                   }};
+                   },
+                   [wanted](const GeneratorMatrices& matrices, std::size_t count) {
+                     const std::optional<int> m = exponent_of(count, matrices.base);
+                     return m && *m <= matrices.digits && (wanted == 0 || wanted == matrices.base);
+                   },
+                   net_t_value};
   };
   return info;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/discrepancy.h"
+#include "core/generator_matrices.h"
 #include "core/parameters.h"
 
 namespace halfslope {
@@ -30,6 +31,10 @@ struct Measure {
   std::function<std::vector<std::string>(std::size_t count, std::size_t dims)> rows;
   /// The values themselves, in the order of `rows`.
   std::function<std::vector<MeasuredValue>(const PointSet& points)> values;
+  /// Whether the generator matrices of a digital net give the values of its first `count` points, even where `refusal`
+  /// speaks of them; null for a measure that has no use for matrices.
+  std::function<bool(const GeneratorMatrices& matrices, std::size_t count)> takes_net = nullptr;
+  std::function<std::vector<MeasuredValue>(const GeneratorMatrices& matrices, std::size_t count)> net_values = nullptr;
 };
 
 /// What `list measures` says of one.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -83,7 +84,8 @@ class PrimeBasis {
 template <class Basis>
 class DependentRows {
  public:
-  DependentRows(const GeneratorMatrices& matrices, int m) : basis_(matrices.base, m), fewest_(m + 1) {
+  DependentRows(const GeneratorMatrices& matrices, int m, double most_steps)
+      : basis_(matrices.base, m), fewest_(m + 1), steps_left_(most_steps) {
     for (int dim = 0; dim < matrices.dims; ++dim) {
       auto& rows = rows_.emplace_back();
       for (int r = 0; r < m; ++r) rows.push_back(Basis::row(matrices, dim, r, m));
@@ -91,13 +93,15 @@ class DependentRows {
     search(0, 0);
   }
   int fewest() const { return fewest_; }
+  /// Whether there are no fewer.
+  bool finished() const { return steps_left_ > 0; }
 
  private:
   void search(std::size_t dim, int taken) {
-    if (dim == rows_.size()) return;
+    if (dim == rows_.size() || --steps_left_ <= 0) return;
     search(dim + 1, taken);
     int own = 0;
-    while (taken + own + 1 < fewest_) {
+    while (taken + own + 1 < fewest_ && finished()) {
       if (!basis_.insert(rows_[dim][static_cast<std::size_t>(own)])) {
         fewest_ = taken + own + 1;
         break;
@@ -111,19 +115,20 @@ class DependentRows {
   std::vector<std::vector<typename Basis::Row>> rows_;
   Basis basis_;
   int fewest_;
+  double steps_left_;
 };
+
+template <class Basis>
+TValueBounds bounds_by(const GeneratorMatrices& matrices, int m, double most_steps) {
+  const DependentRows<Basis> rows(matrices, m, most_steps);
+  const int lower = m - (rows.fewest() - 1);
+  return {lower, rows.finished() ? lower : m};
+}
 
 bool is_prime(std::uint32_t n) {
   for (std::uint32_t k = 2; k <= n / k; ++k)
     if (n % k == 0) return false;
   return n >= 2;
-}
-
-/// m where count is base^m.
-std::optional<int> exponent_of(std::size_t count, std::uint32_t base) {
-  int m = 0;
-  for (; count % base == 0 && count > 1; count /= base) ++m;
-  return count == 1 ? std::optional(m) : std::nullopt;
 }
 
 /// Points in the elementary intervals.
@@ -185,12 +190,21 @@ class Intervals {
 
 }  // namespace
 
-int t_value(const GeneratorMatrices& matrices, int m) {
+std::optional<int> exponent_of(std::size_t count, std::uint32_t base) {
+  int m = 0;
+  for (; count % base == 0 && count > 1; count /= base) ++m;
+  return count == 1 ? std::optional(m) : std::nullopt;
+}
+
+TValueBounds t_value_bounds(const GeneratorMatrices& matrices, int m, double most_steps) {
   assert_equal(is_prime(matrices.base), true, "generator matrices over a field: a prime base");
   assert_equal(m >= 0 && m <= matrices.digits && m <= 64, true, "digits of the index within the matrices'");
-  const int fewest = matrices.base == 2 ? DependentRows<BinaryBasis>(matrices, m).fewest()
-                                        : DependentRows<PrimeBasis>(matrices, m).fewest();
-  return m - (fewest - 1);
+  return matrices.base == 2 ? bounds_by<BinaryBasis>(matrices, m, most_steps)
+                            : bounds_by<PrimeBasis>(matrices, m, most_steps);
+}
+
+int t_value(const GeneratorMatrices& matrices, int m) {
+  return t_value_bounds(matrices, m, std::numeric_limits<double>::infinity()).lower;
 }
 
 int t_value(const PointSet& points, std::uint32_t base) {

@@ -2,12 +2,25 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "analysis/discrepancy.h"
 #include "core/generator_matrices.h"
 
 namespace halfslope {
+
+/// What t lies between.
+struct TValueBounds {
+  int lower, upper;
+};
+
+/// t_value of matrices within `most_steps` of its search: where these do not suffice, the t of the fewest dependent
+/// rows that were found, which it is at least, and m, which it is at most.
+TValueBounds t_value_bounds(const GeneratorMatrices& matrices, int m, double most_steps);
+
+/// m where count is base^m, base ≥ 2.
+std::optional<int> exponent_of(std::size_t count, std::uint32_t base);
 
 /// The smallest t for which the first base^m points of these matrices are a (t, m, d)-net: each elementary interval of
 /// volume base^(t − m) holds base^t of them. With the first m columns, m − t is the largest number of rows for which

@@ -28,6 +28,17 @@ std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::str
   return point_file_of(sampler).empty() ? flag(flag_name, make) : make();
 }
 
+void check_count(const Sampler& sampler, std::uint64_t count, const Layout& layout, const char* flag_name) {
+  const auto neighbours = sampler.illegal(count, layout);
+  if (!neighbours) return;
+  std::string nearest;
+  for (const auto& n : {neighbours->below, neighbours->above}) {
+    if (n) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*n);
+  }
+  fail(ExitCode::kUsage, "{}: sampler '{}' cannot make {} points in {} dimension{}; the nearest legal: {}", flag_name,
+       sampler.info().name, count, layout.dims(), layout.dims() == 1 ? "" : "s", nearest);
+}
+
 void check_replicate(const SamplerInfo& sampler, std::uint32_t replicate) {
   if (!sampler.replicates || replicate < *sampler.replicates) return;
   fail(ExitCode::kUsage, "--replicate: sampler '{}' has {} replicate{}, from 0 on, found {}", sampler.name,

@@ -35,6 +35,9 @@ std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const st
 /// The sampler of a flag, which `flag_name` names: likewise.
 std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::string& sampler, const char* flag_name);
 
+/// Error(kUsage) that names the nearest legal counts, unless the sampler has `count` points of that layout.
+void check_count(const Sampler& sampler, std::uint64_t count, const Layout& layout, const char* flag_name);
+
 /// Error(kUsage) for a --replicate that a sampler with so many replicates does not have.
 void check_replicate(const SamplerInfo& sampler, std::uint32_t replicate);
 

@@ -16,6 +16,7 @@
 #include "experiments/message.h"
 #include "experiments/reference.h"
 #include "experiments/render.h"
+#include "scenes/pairs.h"
 
 namespace halfslope {
 namespace {
@@ -36,18 +37,8 @@ int points_command(const PointsArguments& a, const Catalogue& catalogue) {
     fail(ExitCode::kUsage, "--dims: sampler '{}' has at most {} dimensions, found {}", a.sampler,
          sampler->info().max_dims, a.dims);
   }
-  // Pairs, and a single dimension last where the number is odd.
-  Layout layout;
-  layout.groups.assign(static_cast<std::size_t>(a.dims) / 2, 2);
-  if (a.dims % 2 == 1) layout.groups.push_back(1);
-  if (const auto neighbours = sampler->illegal(a.count, layout)) {
-    std::string nearest;
-    for (const auto& n : {neighbours->below, neighbours->above}) {
-      if (n) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*n);
-    }
-    fail(ExitCode::kUsage, "--count: sampler '{}' cannot make {} points in {} dimensions; the nearest legal: {}",
-         a.sampler, a.count, a.dims, nearest);
-  }
+  const Layout layout = pairs(a.dims);
+  check_count(*sampler, a.count, layout, "--count");
   std::vector<std::string> columns;
   for (int d = 0; d < a.dims; ++d) columns.push_back(fmt::format("x{}", d));
   sampler->prepare({a.count, &layout, stream_key(a.seed, a.sampler, "run"), a.pixel, a.replicate, true});

@@ -16,6 +16,7 @@
 #include "experiments/message.h"
 #include "experiments/spec.h"
 #include "experiments/spectrum_image.h"
+#include "samplers/file_points.h"
 #include "scenes/pairs.h"
 
 namespace halfslope {
@@ -59,7 +60,7 @@ SampleCounts counts_of(const MeasureArguments& a, const std::vector<std::string>
     const SamplerInfo& info = samplers.make(name)->info();
     if (!info.replicates && a.files.empty())
       fail(ExitCode::kUsage, "--count is missing: how many points, such as 1024, 16:1024 or a list");
-    if (name.starts_with("file")) spec.samples.counts.push_back(info.max_count);
+    if (!point_file_of(name).empty()) spec.samples.counts.push_back(info.max_count);
   }
   std::ranges::sort(spec.samples.counts);
   const auto repeated = std::ranges::unique(spec.samples.counts);
@@ -91,14 +92,7 @@ void check_counts(const MeasuresRequest& request, const SamplerCatalogue& sample
   for (const std::string& name : request.samplers) {
     const auto sampler = samplers.make(name);
     for (const std::uint64_t count : request.counts.counts) {
-      const auto neighbours = sampler->illegal(count, pairs(request.dims));
-      if (!neighbours || request.counts.is_range) continue;
-      std::string nearest;
-      for (const auto& n : {neighbours->below, neighbours->above}) {
-        if (n) nearest += (nearest.empty() ? "" : " and ") + std::to_string(*n);
-      }
-      fail(ExitCode::kUsage, "--count: '{}' cannot make {} points in {} dimensions; the nearest legal: {}", name, count,
-           request.dims, nearest);
+      if (!request.counts.is_range) check_count(*sampler, count, pairs(request.dims), "--count");
     }
   }
   if (plan.rows() == 0 || (!left_out.empty() && !request.counts.is_range))

@@ -35,7 +35,7 @@ FigureMeasurements measure_for_figure(const FigureRequest& request, const Catalo
     for (const std::string& name : r.samplers) {
       const auto sampler = catalogue.samplers.make(name);
       for (const std::uint64_t count : r.counts.counts) {
-        if (!r.counts.is_range) check_count(*sampler, count, pairs(r.dims));
+        if (!r.counts.is_range) check_count(*sampler, count, pairs(r.dims), "--samples");
       }
     }
     std::vector<std::string> left_out;

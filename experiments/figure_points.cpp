@@ -49,7 +49,7 @@ Panel sample(const std::string& name, const FigureRequest& request, const Catalo
          name);
   }
   const Layout layout = pairs(std::max(request.axes[0], request.axes[1]) + 1);
-  check_count(*sampler, count, layout);
+  check_count(*sampler, count, layout, "--samples");
   check_replicate(panel.info, request.replicate);
   panel.strata = strata_of(panel.info, count, request.axes);
   sampler->prepare({count, &layout, stream_key(request.spec.seed, name, "run"), 0, request.replicate, true});

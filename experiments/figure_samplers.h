@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "core/layout.h"
 #include "experiments/figures.h"
 
 namespace halfslope {
@@ -18,8 +17,5 @@ std::vector<std::string> figure_samplers(const FigureRequest& request, const Cat
 
 /// --samples; where it is not given, all points of a file, and `usual` of any other sampler.
 SampleCounts figure_counts(const FigureRequest& request, const SamplerInfo& info, const SampleCounts& usual);
-
-/// Error(kUsage) that names the nearest legal counts.
-void check_count(const Sampler& sampler, std::uint64_t count, const Layout& layout);
 
 }  // namespace halfslope

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for_each.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/atomic_file.h"
 #include "core/csv.h"
@@ -102,12 +103,22 @@ void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const T
     first += points.counts[n].rows.size() * static_cast<std::size_t>(points.replicates);
   for (std::size_t n = task.first_count; n < task.end_count; ++n) {
     const MeasuredCount& counted = points.counts[n];
+    // What follows from generator matrices is the same for all replicates.
+    std::map<std::size_t, std::vector<MeasuredValue>> of_net;
+    for (const std::size_t m : counted.measures) {
+      const Measure& measure = plan.measures[m];
+      if (measure.takes_net && points.matrices && measure.takes_net(*points.matrices, counted.count))
+        of_net[m] = measure.net_values(*points.matrices, counted.count);
+    }
     for (int lane = 0; lane < task.replicates && !interrupted(); ++lane) {
       const PointSet set = columns.prefix(lane, counted.count);
       auto row =
           rows.begin() + static_cast<std::ptrdiff_t>(first + static_cast<std::size_t>(task.first_replicate + lane) *
                                                                  counted.rows.size());
-      for (const std::size_t m : counted.measures) row = std::ranges::copy(plan.measures[m].values(set), row).out;
+      for (const std::size_t m : counted.measures) {
+        const auto net = of_net.find(m);
+        row = std::ranges::copy(net == of_net.end() ? plan.measures[m].values(set) : net->second, row).out;
+      }
       progress.advance(static_cast<double>(counted.count));
     }
     first += counted.rows.size() * static_cast<std::size_t>(points.replicates);

@@ -44,6 +44,7 @@ struct MeasuredPoints {
   std::vector<MeasuredCount> counts;  ///< by N, ascending, all legal
   std::int64_t replicates = 1;
   StreamKey key;
+  std::optional<GeneratorMatrices> matrices = std::nullopt;  ///< of a digital net: of as many points as are measured
 
   std::size_t rows() const;  ///< of discrepancy.csv
 };

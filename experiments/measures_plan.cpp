@@ -1,5 +1,6 @@
 // What is measured, and what is left out.
 #include <algorithm>
+#include <iterator>
 
 #include "experiments/fold.h"
 #include "experiments/joined.h"
@@ -13,69 +14,104 @@ namespace {
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 20;
 // Of one set; as many as there are threads may be held at once.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
+// 32 bytes each, so 1 GB.
+constexpr std::uint64_t kMostValues = std::uint64_t{1} << 25;
 
-/// Positions in `measures` of those that can measure so many points, and what their values are called.
-MeasuredCount measured_count(std::span<const Measure> measures, std::uint64_t count, std::size_t dims) {
+/// What is left out of one sampler's measures, a line for each reason.
+class LeftOut {
+ public:
+  explicit LeftOut(std::vector<std::string>& lines) : lines_(lines) {}
+  ~LeftOut() {
+    for (const Reason& r : reasons_)
+      lines_.push_back(fmt::format("discrepancy: {}N = {}{}", r.before, joined(r.counts), r.after));
+  }
+  LeftOut(const LeftOut&) = delete;
+  LeftOut& operator=(const LeftOut&) = delete;
+  /// What stands before the counts tells reasons apart; what stands after them is that of the last one.
+  void add(const std::string& before, std::uint64_t count, const std::string& after) {
+    const auto known = std::ranges::find(reasons_, before, &Reason::before);
+    Reason& reason = known == reasons_.end() ? reasons_.emplace_back(Reason{before, {}, ""}) : *known;
+    reason.counts.push_back(count);
+    reason.after = after;
+  }
+
+ private:
+  struct Reason {
+    std::string before;
+    std::vector<std::uint64_t> counts;
+    std::string after;
+  };
+  std::vector<std::string>& lines_;
+  std::vector<Reason> reasons_;
+};
+
+/// The generator matrices of the sampler's points up to `count`, if they are a digital net.
+std::optional<GeneratorMatrices> matrices_of(const Sampler& sampler, int dims, std::uint64_t count) {
+  const auto one = sampler.generator_matrices(dims, 1);
+  if (!one) return std::nullopt;
+  int digits = 1;
+  for (std::uint64_t power = one->base; power < count; power *= one->base) ++digits;
+  return sampler.generator_matrices(dims, digits);
+}
+
+bool takes_net(const Measure& measure, const MeasuredPoints& points, std::uint64_t count) {
+  return measure.takes_net && points.matrices && measure.takes_net(*points.matrices, count);
+}
+
+/// The measures that `count` of the points have, and what their values are called.
+MeasuredCount measured_count(const MeasuredPoints& points, std::span<const Measure> measures, std::uint64_t count,
+                             LeftOut& left_out) {
+  const auto dims = static_cast<std::size_t>(points.layout.dims());
   MeasuredCount n = {count, {}, {}};
   for (std::size_t m = 0; m < measures.size(); ++m) {
-    if (!measures[m].refusal(count, dims).empty()) continue;
+    const std::string problem = measures[m].refusal(count, dims);
+    if (!problem.empty() && !takes_net(measures[m], points, count)) {
+      left_out.add(measures[m].name + " at ", count, ": left out, since " + problem);
+      continue;
+    }
+    std::vector<std::string> rows = measures[m].rows(count, dims);
+    const std::uint64_t values = rows.size() * static_cast<std::uint64_t>(points.replicates);
+    if (values > kMostValues) {
+      left_out.add(measures[m].name + " at ", count,
+                   fmt::format(": left out, since its {} values of all replicates are more than the {} that are held",
+                               values, kMostValues));
+      continue;
+    }
     n.measures.push_back(m);
-    for (std::string& row : measures[m].rows(count, dims)) n.rows.push_back(std::move(row));
+    std::ranges::move(rows, std::back_inserter(n.rows));
   }
   return n;
 }
 
 MeasuredPoints plan_points(const MeasuresRequest& request, const Sampler& sampler, std::span<const Measure> measures,
-                           std::vector<std::string>& left_out) {
+                           std::vector<std::string>& lines) {
   const SamplerInfo& info = sampler.info();
   const Layout layout = pairs(request.dims);
   const auto dims = static_cast<std::size_t>(request.dims);
   MeasuredPoints points = {info.name, layout, info.sequence, {}, 1, stream_key(request.seed, info.name, "run")};
   points.replicates = std::min(info.replicates_of(request.replicates), kMostKept);
   if (info.max_dims < request.dims) {
-    left_out.push_back(fmt::format("discrepancy: sampler '{}' has at most {} dimension{}, not {}: left out", info.name,
-                                   info.max_dims, info.max_dims == 1 ? "" : "s", request.dims));
+    lines.push_back(fmt::format("discrepancy: sampler '{}' has at most {} dimension{}, not {}: left out", info.name,
+                                info.max_dims, info.max_dims == 1 ? "" : "s", request.dims));
     return points;
   }
-  std::vector<std::uint64_t> illegal, too_many, too_large;
+  LeftOut left_out(lines);
+  const auto gigabytes = [](std::uint64_t bytes) {
+    return fmt::format("{:.3g} GB", static_cast<double>(bytes) * 1e-9);
+  };
   for (const std::uint64_t count : request.counts.counts) {
-    if (count > kMostPoints) {
-      too_many.push_back(count);
-    } else if (count * dims * sizeof(double) > kMostBytes) {
-      too_large.push_back(count);
+    if (const std::uint64_t bytes = count * dims * sizeof(double); count > kMostPoints) {
+      left_out.add("", count, fmt::format(": left out, since at most {} points are measured", kMostPoints));
+    } else if (bytes > kMostBytes) {
+      left_out.add("", count,
+                   fmt::format(": left out, since the points would take {} in {} dimensions; at most {} are held",
+                               gigabytes(bytes), dims, gigabytes(kMostBytes)));
     } else if (sampler.illegal(count, layout)) {
-      illegal.push_back(count);
+      left_out.add(fmt::format("sampler '{}' cannot make ", info.name), count,
+                   fmt::format(" points in {} dimensions: left out", dims));
     } else {
-      points.counts.push_back(measured_count(measures, count, dims));
-    }
-  }
-  if (!illegal.empty()) {
-    left_out.push_back(fmt::format("discrepancy: sampler '{}' cannot make N = {} points in {} dimensions: left out",
-                                   info.name, joined(illegal), request.dims));
-  }
-  if (!too_many.empty()) {
-    left_out.push_back(fmt::format("discrepancy: N = {}: left out, since at most {} points are measured",
-                                   joined(too_many), kMostPoints));
-  }
-  if (!too_large.empty()) {
-    left_out.push_back(
-        fmt::format("discrepancy: N = {}: left out, since the points would take {:.3g} GB in {} dimensions; at most "
-                    "{:.3g} are held",
-                    joined(too_large), static_cast<double>(too_large.front() * dims * sizeof(double)) * 1e-9, dims,
-                    static_cast<double>(kMostBytes) * 1e-9));
-  }
-  for (const Measure& measure : measures) {
-    std::vector<std::uint64_t> refused;
-    std::string why;
-    for (const MeasuredCount& n : points.counts) {
-      const std::string problem = measure.refusal(n.count, dims);
-      if (problem.empty()) continue;
-      refused.push_back(n.count);
-      why = problem;
-    }
-    if (!refused.empty()) {
-      left_out.push_back(
-          fmt::format("discrepancy: {} at N = {}: left out, since {}", measure.name, joined(refused), why));
+      points.matrices = matrices_of(sampler, request.dims, count);
+      points.counts.push_back(measured_count(points, measures, count, left_out));
     }
   }
   return points;

@@ -95,8 +95,9 @@ TEST_F(MeasureCommand, LeavesOutOfARangeWhatItRefusesInAList) {
   EXPECT_EQ(range.code, 0);
   EXPECT_EQ(CsvTable(range.out).size(), 2u);
   EXPECT_THAT(range.err, HasSubstr("'jittered' cannot make N = 8, 32 points in 2 dimensions: left out"));
-  EXPECT_THAT(usage({"--sampler", "jittered", "--count", "10"}),
-              HasSubstr("--count: 'jittered' cannot make 10 points in 2 dimensions; the nearest legal: 9 and 16"));
+  EXPECT_THAT(
+      usage({"--sampler", "jittered", "--count", "10"}),
+      HasSubstr("--count: sampler 'jittered' cannot make 10 points in 2 dimensions; the nearest legal: 9 and 16"));
   EXPECT_THAT(usage({"--sampler", "independent", "--count", "4194304"}), HasSubstr("at most 1048576 points"));
   EXPECT_THAT(usage({"--sampler", "independent", "--count", "1048576", "--dims", "1000", "--measures", "l2-star"}),
               HasSubstr("would take 8.39 GB in 1000 dimensions"));
