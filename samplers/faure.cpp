@@ -111,7 +111,7 @@ class FaureOwen final : public Sampler {
     return kInfo;
   }
   std::optional<LegalNeighbours> illegal(std::uint64_t count, const Layout& layout) const override {
-    const std::uint64_t most = ScrambledInverse::most_points_in(faure_base(layout.dims()));
+    const std::uint64_t most = ScrambledInverse::most_points_in(faure_base(std::clamp(layout.dims(), 1, kMostDims)));
     if (count > most) return LegalNeighbours{most, std::nullopt};
     return Sampler::illegal(count, layout);
   }
@@ -122,7 +122,7 @@ class FaureOwen final : public Sampler {
   void prepare(const PointRequest& request) override {
     words_.prepare(request);
     const int dims = request.layout->dims();
-    const std::uint32_t base = faure_base(dims);
+    const std::uint32_t base = faure_base(std::max(dims, 1));
     if (digits_.size() != static_cast<std::size_t>(dims)) {
       const GeneratorMatrices matrices = faure_matrices(std::max(dims, 1), index_digits(base));
       digits_.clear();

@@ -8,6 +8,7 @@
 namespace halfslope {
 
 std::uint32_t faure_base(int dims) {
+  assert_equal(1 <= dims && dims <= 1024, true, "faure_base: one to 1024 dimensions");
   return *std::lower_bound(primes().begin(), primes().end(), static_cast<std::uint32_t>(dims));
 }
 

@@ -57,7 +57,7 @@ class SobolXor final : public Sampler {
     static const SamplerInfo kInfo = {
         .name = "sobol-xor",
         .description = "Sobol' sequence under a digital shift: the same random digits are added to every point's",
-        .reference = "Owen, Randomly permuted (t,m,s)-nets (1995), section 3; Lemieux, Monte Carlo and QMC (2009)",
+        .reference = "L'Ecuyer & Lemieux, Recent advances in randomized quasi-Monte Carlo methods (2002)",
         .sequence = true,
         .max_dims = sobol_dims(),
     };
