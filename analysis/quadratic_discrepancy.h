@@ -54,18 +54,18 @@ double quadratic_discrepancy_by_pairs(const PointSet& points, const QuadraticKer
 double quadratic_discrepancy_variance(std::size_t dims, const QuadraticKernel& kernel);
 
 /// The measures by name, each the root of its D²; l2_star_discrepancy is in analysis/discrepancy.h.
-/// Boxes from each point of the cube to its nearest corner: F. J. Hickernell, 1998, equation (5.1c).
+/// Boxes from each place of the cube to its nearest corner: F. J. Hickernell, 1998.
 double centered_l2_discrepancy(const PointSet& points);
-/// All boxes of the torus: F. J. Hickernell, "Lattice rules: how well do they measure up?", 1998, section 4.
+/// Boxes that may go round the torus: F. J. Hickernell, "Lattice rules: how well do they measure up?", 1998.
 double wraparound_l2_discrepancy(const PointSet& points);
 /// Y.-D. Zhou, K.-T. Fang, J.-H. Ning, "Mixture discrepancy for quasi-random point sets", J. Complexity 29, 2013.
 double mixture_l2_discrepancy(const PointSet& points);
-/// Boxes of even vertices: F. J. Hickernell, 1998, section 5.
+/// Unions of boxes at corners of even parity: F. J. Hickernell, 1998.
 double symmetric_l2_discrepancy(const PointSet& points);
 /// All axis-parallel boxes of the cube: W. J. Morokoff, R. E. Caflisch, "Quasi-random sequences and their
 /// discrepancies", SIAM J. Sci. Comput. 15, 1994.
 double extreme_l2_discrepancy(const PointSet& points);
-/// All boxes of the torus, with another weight than wrap-around's: A. Hinrichs, R. Kritzinger, F. Pillichshammer,
+/// All boxes of the torus, without wrap-around's projections: A. Hinrichs, R. Kritzinger, F. Pillichshammer,
 /// "Extreme and periodic L2 discrepancy of plane point sets", Acta Arith. 199, 2021.
 double periodic_l2_discrepancy(const PointSet& points);
 /// P. Zinterhof, "Über einige Abschätzungen bei der Approximation von Funktionen mit Gleichverteilungsmethoden", 1976,

@@ -1,6 +1,5 @@
 // The exact star discrepancy against looking at every box, O(N²), in one run: the counter `every_box` of the first is
-// how many times as long the other takes. Timed only where both agree. Then L2-star, and sizes where nobody waits for
-// every box.
+// how many times as long the other takes. Timed only where both agree. Then sizes where nobody waits for every box.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
