@@ -25,7 +25,7 @@ class PairCounter {
         bins_(static_cast<std::size_t>(bins.bins)),
         scale_(bins.bins / bins.most),
         // Fewer than three strips would be their own neighbours' neighbours; more than √N gain nothing.
-        strips_(std::min(std::floor(1 / bins.most), std::sqrt(static_cast<double>(points.count())))),
+        strips_(std::floor(std::min(1 / bins.most, std::sqrt(static_cast<double>(points.count()))))),
         counts_((bins_ + 1) * kTables) {
     if (strips_ < 3 || points.dims() == 1) strips_ = 1;
     sort(points);
