@@ -177,6 +177,8 @@ std::string summary(const Plan& plan, const Results& results) {
               duel;
     }
   }
+  if (const std::string rates = rates_side_by_side(plan, results); !rates.empty())
+    text += "\nrates, the slopes of log RMSE against log N, with 95 % intervals\n\n" + rates;
   return text;
 }
 

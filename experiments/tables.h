@@ -26,6 +26,10 @@ std::string rates_csv(const Plan& plan, const Results& results);
 /// Empty where no scene has parts.
 std::string regions_csv(const Plan& plan, const Results& results);
 
+/// The rates of at least three scenes as a table: a row a sampler (and estimator, where there are several), a column a
+/// scene. Empty where there are fewer, or one row.
+std::string rates_side_by_side(const Plan& plan, const Results& results);
+
 /// What a person wants to see first: the largest N side by side, rates, and where an image has parts, which estimator
 /// wins where.
 std::string summary(const Plan& plan, const Results& results);
