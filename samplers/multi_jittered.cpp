@@ -1,6 +1,7 @@
 #include "samplers/multi_jittered.h"
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "samplers/keyed_hash.h"

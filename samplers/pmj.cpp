@@ -9,6 +9,7 @@
 // Likewise y. That is the paper's choice of a random free stratum, without its search.
 #include "samplers/pmj.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <vector>

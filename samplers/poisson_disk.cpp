@@ -1,5 +1,7 @@
 #include "samplers/poisson_disk.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "samplers/keyed_hash.h"
