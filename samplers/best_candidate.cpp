@@ -90,7 +90,8 @@ std::unique_ptr<Sampler> make_best_candidate() {
        .max_dims = kPaddedDims,
        .max_count = std::uint64_t{1} << 14,
        .caveats = {"made anew for every pixel, at a cost that grows as the square of N: slow on pictures",
-                   "a single dimension, and each coordinate alone, is hardly better than random"}},
+                   "no coordinate alone is stratified: a single dimension gains no more than a pair, a constant and "
+                   "little rate"}},
       [scratch = std::make_shared<NearestGrid>()] { return std::make_unique<BestCandidate>(scratch); }, kHeldPoints);
 }
 

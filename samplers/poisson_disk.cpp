@@ -72,7 +72,8 @@ std::unique_ptr<Sampler> make_poisson_disk() {
        .max_dims = kPaddedDims,
        .max_count = std::uint64_t{1} << 16,
        .caveats = {"made anew for every pixel at some microseconds a point: slow on pictures",
-                   "a single dimension, and each coordinate alone, is hardly better than random"}},
+                   "no coordinate alone is stratified: a single dimension gains no more than a pair, a constant and "
+                   "little rate"}},
       [scratch = std::make_shared<Scratch>()] { return std::make_unique<PoissonDisk>(scratch); }, kHeldPoints);
 }
 

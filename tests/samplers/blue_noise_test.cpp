@@ -99,7 +99,7 @@ TEST(BestCandidate, EachPointIsTheFarthestOfAsManyCandidatesAsThereArePoints) {
   }
 }
 
-TEST(BlueNoise, ASinglePixelOfPointsIsSpreadUniformly) {
+TEST(BlueNoise, NoPlaceOfTheTorusIsPreferred) {
   // All points of a set together, in 16 × 16 cells, against a uniform spread: no place of the torus is preferred.
   // Points that keep their distance fall into cells more evenly than independent ones, so χ² is smaller, never larger,
   // than with 255 degrees of freedom. False alarm below 1e-7.
@@ -115,6 +115,27 @@ TEST(BlueNoise, ASinglePixelOfPointsIsSpreadUniformly) {
       }
     }
     EXPECT_LT(chi_squared(std::span<const std::uint32_t>(cells)), chi_squared_upper(255, 1e-7)) << name;
+  }
+}
+
+TEST(BlueNoise, ACoordinateAloneIsNotStratified) {
+  // Of the mean of x over N = 64 points: 1/(12N) if they were independent, 1/(12N³) if x were stratified. Blue noise
+  // stays within the first's order of magnitude or so. 2048 estimates, nearly normal: the bounds are a factor of two
+  // and more away from 5.5 of their spread.
+  for (const char* name : {"poisson-disk", "best-candidate"}) {
+    const auto sampler = sampler_named(name);
+    double squares = 0;
+    for (std::uint32_t group = 0; group < 128; ++group) {
+      const Points points = points_of(*sampler, 64, {{1}}, group * kLanes);
+      for (int lane = 0; lane < kLanes; ++lane) {
+        double error = 0;
+        for (std::uint64_t i = 0; i < 64; ++i) error += (points(0, i, lane) - 0.5) / 64;
+        squares += error * error;
+      }
+    }
+    const double variance = squares / (128 * kLanes);
+    EXPECT_LT(variance, 0.5 / (12 * 64.0)) << name;
+    EXPECT_GT(variance, 20 / (12 * 64.0 * 64 * 64)) << name;
   }
 }
 
