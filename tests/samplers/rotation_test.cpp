@@ -17,7 +17,7 @@ constexpr std::uint64_t kLowMask = (1u << 21) - 1;
 struct Pair {
   const char *plain, *rotated;
 };
-constexpr Pair kPairs[] = {{"halton", "halton-cp"}, {"hammersley", "hammersley-cp"}};
+constexpr Pair kPairs[] = {{"halton", "halton-cp"}, {"hammersley", "hammersley-cp"}, {"sobol", "sobol-cp"}};
 
 TEST(Rotation, ShiftsEveryPointOfADimensionAlikeModuloOne) {
   for (const auto& [plain, rotated] : kPairs) {
@@ -42,8 +42,8 @@ TEST(Rotation, ShiftsEveryPointOfADimensionAlikeModuloOne) {
 }
 
 TEST(Rotation, ShiftsAreUniformAndIndependentBetweenDimensions) {
-  // The first point of both is the origin, so it is the shift. 65536 replicates; each dimension's first and last eight
-  // bits (255 degrees), and 16 × 16 bins of every two dimensions: false alarm 1e-8 for each of 40.
+  // The first point of each is the origin, so it is the shift. 65536 replicates; each dimension's first and last eight
+  // bits (255 degrees), and 16 × 16 bins of every two dimensions: false alarm 1e-8 for each of 60.
   for (const auto& [plain, rotated] : kPairs) {
     const auto sampler = sampler_named(rotated);
     std::array<std::array<std::uint32_t, 256>, 5> top = {}, bottom = {};

@@ -168,6 +168,41 @@ TEST(Sobol, L2StarDiscrepancyIsWhatOthersMeasure) {
   }
 }
 
+TEST(Sobol, StarDiscrepancyIsWhatOthersMeasure) {
+  // The worst box has its upper corner on a grid of the points' coordinates and 1, and is open or closed there.
+  struct Case {
+    int dims;
+    std::uint64_t count;
+    double value;
+  };
+  constexpr Case kCases[] = {{2, 8, 0.3125},    {2, 16, 0.171875},     {2, 32, 0.08984375},
+                             {3, 8, 0.3828125}, {3, 16, 0.2177734375}, {3, 32, 0.1298828125}};
+  for (const auto& [dims, count, value] : kCases) {
+    const Points points = points_of(*sampler_named("sobol"), count, singles(dims));
+    const auto corner = [&](int d, std::uint64_t i) { return i < count ? points(d, i, 0) : 1; };
+    std::uint64_t corners = 1;
+    for (int d = 0; d < dims; ++d) corners *= count + 1;
+    double worst = 0;
+    for (std::uint64_t c = 0; c < corners; ++c) {
+      double volume = 1, open = 0, closed = 0;
+      std::uint64_t rest = c;
+      std::vector<double> x;
+      for (int d = 0; d < dims; ++d, rest /= count + 1) volume *= x.emplace_back(corner(d, rest % (count + 1)));
+      for (std::uint64_t i = 0; i < count; ++i) {
+        bool below = true, within = true;
+        for (int d = 0; d < dims; ++d) {
+          below = below && points(d, i, 0) < x[static_cast<std::size_t>(d)];
+          within = within && points(d, i, 0) <= x[static_cast<std::size_t>(d)];
+        }
+        open += below, closed += within;
+      }
+      const auto n = static_cast<double>(count);
+      worst = std::max({worst, volume - open / n, closed / n - volume});
+    }
+    EXPECT_NEAR(worst, value, 1e-12) << dims << ' ' << count;
+  }
+}
+
 TEST(SobolXor, AllPointsOfADimensionGetTheSame53Digits) {
   const Points plain = points_of(*sampler_named("sobol"), 1000, singles(5));
   const Points shifted = points_of(*sampler_named("sobol-xor"), 1000, singles(5));
