@@ -143,7 +143,7 @@ void draw_bands(Canvas& canvas, const Axes& axes, const ChartLine& line, const C
   end_band();
 }
 
-void draw_line(Canvas& canvas, const Axes& axes, const ChartStyle& style, const ChartLine& line) {
+void draw_line(Canvas& canvas, const Axes& axes, const ChartStyle& style, const ChartLine& line, bool markers) {
   const Look& look = looks()[line.look];
   const double top = axes.top_left.y, bottom = top + axes.height;
   const bool curve = style.intervals == Intervals::kBands;
@@ -155,6 +155,7 @@ void draw_line(Canvas& canvas, const Axes& axes, const ChartStyle& style, const 
   if (curve) draw_bands(canvas, axes, line, style, look.ink);
   draw_cut_line(canvas, points, top, bottom, {look.ink, 0.9, look.dashes});
   if (!curve) draw_bars(canvas, axes, line, style, {look.ink, 0.5});
+  if (!markers) return canvas.end_group();
   // Of a curve, each line marks points of its own, so that markers of lines that run together lie side by side.
   const std::size_t step = curve ? std::max<std::size_t>(1, points.size() / kMarkersOfCurve) : 1;
   for (std::size_t k = step * (2 * line.look + 1) / (2 * looks().size()); k < points.size(); k += step) {
@@ -239,7 +240,8 @@ void draw_chart(Canvas& canvas, const Axes& axes, const std::optional<Axis>& x_a
   draw_guides(canvas, axes, chart);
   axes.draw_frame(canvas);
   if (x_above) draw_x_above(canvas, axes, *x_above);
-  for (const ChartLine& line : chart.lines) draw_line(canvas, axes, chart.style, line);
+  const bool markers = chart.style.intervals == Intervals::kBars || chart.lines.size() > 1;
+  for (const ChartLine& line : chart.lines) draw_line(canvas, axes, chart.style, line, markers);
 }
 
 double legend_width(const LineChart& chart) {

@@ -28,7 +28,8 @@ struct ChartLine {
   std::vector<ChartPoint> points;  ///< ascending in x
 };
 
-/// Bars with a marker at every point; or, for curves of many points, bands with a marker now and then.
+/// Bars with a marker at every point; or, for curves of many points, bands, with a marker now and then that tells the
+/// lines of one chart apart.
 enum class Intervals { kBars, kBands };
 
 /// What is drawn around and between the lines.

@@ -32,6 +32,11 @@ void add_charts(LinePage& page, const std::string& group, const ChartStyle& styl
   bool cut = false;
   for (const ChartLine& line : lines)
     cut = cut || std::ranges::any_of(line.points, [&](const ChartPoint& p) { return p.y > style.y_most; });
+  const bool intervals = std::ranges::any_of(lines, [](const ChartLine& line) {
+    return std::ranges::any_of(line.points, [](const ChartPoint& p) { return p.hi.has_value(); });
+  });
+  const std::string bands = "Bands: 95 % intervals of the mean over replicates. ";
+  if (intervals && !page.caption.starts_with(bands)) page.caption = bands + page.caption;
   if (cut) page.caption += fmt::format(" Values above {:g} are cut off.", style.y_most);
   if (!side_by_side && lines.size() <= looks().size()) {
     page.charts.push_back({"", group, style, std::move(lines)});
@@ -114,7 +119,7 @@ LinePage radial_spectrum_page(const std::vector<MeasuredMean>& means, bool side_
   const bool same = same_count(means);
   LinePage page;
   page.title = "Radial power spectrum";
-  page.caption = "Bands: 95 % intervals of the mean over replicates. Grey line: independent points.";
+  page.caption = "Grey line: independent points.";
   ChartStyle style;
   style.x_label = same ? "frequency f" : "frequency f/√N";
   style.y_label = "radial mean power P(f)";

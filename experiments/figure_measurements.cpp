@@ -1,6 +1,7 @@
 #include "experiments/figure_measurements.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/error.h"
 #include "core/parameters.h"
@@ -83,15 +84,19 @@ bool same_count(const std::vector<MeasuredMean>& means) {
 }
 
 std::string measured_subtitle(const std::vector<MeasuredMean>& means, std::uint64_t seed) {
-  std::int64_t replicates = 1;
-  for (const MeasuredMean& mean : means) replicates = std::max(replicates, mean.points->replicates);
+  std::int64_t fewest = std::numeric_limits<std::int64_t>::max(), replicates = 1;
+  for (const MeasuredMean& mean : means) {
+    fewest = std::min(fewest, mean.points->replicates);
+    replicates = std::max(replicates, mean.points->replicates);
+  }
   std::string text;
   if (!means.empty() && same_count(means)) text += fmt::format("N = {}, ", means.front().count);
   if (!means.empty() && means.front().points->layout.dims() != 2) {
     const int dims = means.front().points->layout.dims();
     text += fmt::format("{} dimension{}, ", dims, dims == 1 ? "" : "s");
   }
-  return text + fmt::format("{} replicate{}, seed {}", replicates, replicates == 1 ? "" : "s", seed);
+  return text + fmt::format("{}{} replicate{}, seed {}", fewest < replicates ? "up to " : "", replicates,
+                            replicates == 1 ? "" : "s", seed);
 }
 
 }  // namespace halfslope

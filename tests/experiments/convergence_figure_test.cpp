@@ -3,14 +3,13 @@
 
 #include <cmath>
 #include <map>
-#include <pugixml.hpp>
 #include <set>
-#include <sstream>
 
 #include "core/atomic_file.h"
 #include "core/csv.h"
 #include "experiments/convergence_panels.h"
 #include "tests/experiments/command_line_fixture.h"
+#include "tests/experiments/svg_reading.h"
 
 namespace halfslope {
 namespace {
@@ -51,41 +50,6 @@ class ConvergenceFigure : public CommandLine {
     return document;
   }
 };
-
-std::vector<std::string> texts(const pugi::xml_document& document) {
-  std::vector<std::string> found;
-  for (const auto& node : document.select_nodes("//text")) found.push_back(node.node().child_value());
-  return found;
-}
-
-struct Place {
-  double x, y;
-};
-
-std::vector<Place> points_of(const pugi::xml_node& node) {
-  std::vector<Place> points;
-  std::istringstream text(node.attribute("points").value());
-  char comma;
-  for (Place p{}; text >> p.x >> comma >> p.y;) points.push_back(p);
-  return points;
-}
-
-/// log value = a + b · place, through two of the axis' labels.
-struct LogMap {
-  double a, b;
-  LogMap(double place0, double value0, double place1, double value1)
-      : a(std::log(value0) - place0 * std::log(value1 / value0) / (place1 - place0)),
-        b(std::log(value1 / value0) / (place1 - place0)) {}
-  double value(double place) const { return std::exp(a + b * place); }
-};
-
-/// Where a label stands: x of its middle, or y of its middle line (the baseline is 0.36 of the size below).
-double place_of(const pugi::xml_document& document, const std::string& label, bool is_x) {
-  const auto node = document.select_node(("//text[text()='" + label + "']").c_str()).node();
-  EXPECT_TRUE(node) << label;
-  return is_x ? node.attribute("x").as_double()
-              : node.attribute("y").as_double() - 0.36 * node.attribute("font-size").as_double();
-}
 
 TEST_F(ConvergenceFigure, EveryPointStandsAtItsLogarithms) {
   const std::vector<Row> rows = {{"mean", "independent", 4, 0.5, 0.4, 0.7},

@@ -3,7 +3,6 @@
 #include <png.h>
 
 #include <cmath>
-#include <pugixml.hpp>
 #include <sstream>
 
 #include "analysis/tone_map.h"
@@ -11,6 +10,7 @@
 #include "core/exr.h"
 #include "tests/experiments/command_line_fixture.h"
 #include "tests/experiments/csv_table.h"
+#include "tests/experiments/svg_reading.h"
 
 namespace halfslope {
 namespace {
@@ -33,12 +33,6 @@ class Figures : public CommandLine {
     return document;
   }
 };
-
-std::vector<std::string> texts(const pugi::xml_document& document) {
-  std::vector<std::string> found;
-  for (const auto& node : document.select_nodes("//text")) found.push_back(node.node().child_value());
-  return found;
-}
 
 RgbImage embedded(const pugi::xml_node& image) {
   static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
