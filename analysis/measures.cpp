@@ -16,12 +16,10 @@ namespace {
 
 constexpr std::size_t kAnyDims = std::numeric_limits<std::size_t>::max();
 
-std::string never(std::size_t, std::size_t) { return ""; }
-
 /// A measure without parameters that is one number, exact.
 template <double (*kMeasure)(const PointSet&)>
 MeasureInfo exact(std::string name, std::string description, std::string reference, std::size_t max_dims,
-                  std::string (*refusal)(std::size_t count, std::size_t dims) = never) {
+                  std::string (*refusal)(std::size_t count, std::size_t dims)) {
   MeasureInfo info = {std::move(name), std::move(description), std::move(reference), max_dims, {}, false, {}};
   info.make = [name = info.name, refusal](const std::string&, const Parameters&) {
     return Measure{name, refusal, [name](std::size_t, std::size_t) { return std::vector{name}; },

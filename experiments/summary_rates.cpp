@@ -1,4 +1,6 @@
 // The rates of many scenes side by side.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 
