@@ -21,12 +21,12 @@ struct QuadraticKernel {
   QuadraticForm form;
   DoubleDouble g0;
   double g1, g2, g3, h, c;
-  int doublings;  ///< k is 2^doublings times the one of the definition, which keeps products of many dimensions in
-                  ///< range
-  /// f and C come from k; see above.
+  int doublings;            ///< k is 2^doublings times its definition's: many dimensions' products stay in range
+  bool normalised = false;  ///< D² is over that of a single point, k(0, 0)^d − C^d: the diaphony
+
+  /// ḡ and C.
   DoubleDouble mean_g() const { return g0 + DoubleDouble{g2 / 4, 0} + DoubleDouble{g3, 0} / 12.0; }
   DoubleDouble mean() const { return mean_g() * 2.0 - DoubleDouble{c, 0} / 3.0; }
-  bool normalised = false;  ///< D² is over that of a single point, (k(0, 0)^d − C^d): the diaphony
 };
 
 extern const QuadraticKernel kL2Star, kExtremeL2, kSymmetricL2, kCenteredL2, kWraparoundL2, kPeriodicL2, kMixtureL2,
@@ -40,7 +40,7 @@ inline constexpr std::size_t kExtremeDims = 512;
 /// D, not squared. All printed digits are right: a few units of 10⁻¹⁶ of itself up to N = 2²⁰, however much its three
 /// parts cancel. One dimension: a sum of squares of which nothing cancels, O(N log N). Two: exact integers, O(N log N)
 /// time, 132 N bytes. More: pairs of binary64 on packets, O(d N²). More than 2²⁶ points in two dimensions, or more than
-/// kQuadraticDims of them, abort. The bits do not depend on the class of instruction set in one and two dimensions.
+/// kQuadraticDims dimensions, abort. The bits do not depend on the class of instruction set in one and two dimensions.
 double quadratic_discrepancy(const PointSet& points, const QuadraticKernel& kernel);
 
 /// Why it will not measure so many points: the time of more than 10¹² kernels, or memory that this machine does not

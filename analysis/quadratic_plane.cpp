@@ -61,7 +61,7 @@ class FixedKernel {
 };
 
 /// Σ gap · P (T − P) over the gaps between neighbours in one order, P the sum of weights before and T of all: half of
-/// ΣΣ w_i w_j |distance|. In units of 2⁻¹²⁴.
+/// ΣΣ w_i w_j |distance|.
 class GapSum {
  public:
   explicit GapSum(Int128 total) : total_(total) {}
