@@ -78,7 +78,7 @@ std::string subtitle(const SamplerInfo& info) {
   if (info.replicates) return "points from a file";
   if (info.name == "independent") return "uniform random points";
   if (info.name == "jittered" || info.name == "stratified") return "random, one point in each cell";
-  if (info.name == "n-rooks") return "random, one point in each row and column";
+  if (info.name == "n-rooks") return "one point in each row and column";
   return fmt::format("{} {}", info.randomised ? "randomised" : "deterministic", info.sequence ? "sequence" : "set");
 }
 

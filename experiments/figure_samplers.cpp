@@ -5,6 +5,7 @@
 #include "samplers/file_points.h"
 
 namespace halfslope {
+
 std::vector<std::string> figure_samplers(const FigureRequest& request, const Catalogue& catalogue,
                                          const std::vector<std::string>& usual, int dims) {
   const SamplerCatalogue& samplers = catalogue.samplers;

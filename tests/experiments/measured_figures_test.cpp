@@ -1,6 +1,7 @@
 // points, discrepancy, pcf and spectra as they are called: from samplers and files to what stands on the page.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -251,6 +252,39 @@ TEST(PointsFigure, StrataAreThoseOfTheTwoDimensions) {
   EXPECT_EQ(strata_lines("orthogonal-array", 25, {1, 4}), 4 + 4);       // strength 2: any two dimensions
   EXPECT_EQ(strata_lines("n-rooks", 7, {1, 4}), 6 + 6);
   EXPECT_EQ(strata_lines("hammersley", 16, {0, 1}), 0);
+}
+
+TEST(PointsFigure, EachCellBetweenTheLinesHoldsOnePoint) {
+  for (const auto& [name, count] : std::vector<std::pair<std::string, std::uint64_t>>{{"regular", 49},
+                                                                                      {"jittered", 49},
+                                                                                      {"stratified", 24},
+                                                                                      {"multi-jittered", 24},
+                                                                                      {"correlated-multi-jittered", 24},
+                                                                                      {"orthogonal-array", 49}}) {
+    FigureRequest request;
+    request.name = "points";
+    request.spec.samplers = {name};
+    request.spec.samples.counts = {count};
+    request.axes = {1, 0};
+    const Canvas canvas = draw_points_figure(request, Catalogue::built_in());
+    std::vector<double> across, up;  // where the lines are
+    std::set<std::pair<std::ptrdiff_t, std::ptrdiff_t>> cells;
+    for (const Canvas::Element& element : canvas.elements()) {
+      if (const auto* path = std::get_if<Canvas::Path>(&element)) {
+        if (!path->paint.stroke || path->paint.stroke->ink != Ink{215, 215, 215}) continue;
+        const bool vertical = path->points[0].x == path->points[1].x;
+        (vertical ? across : up).push_back(vertical ? path->points[0].x : path->points[0].y);
+      }
+      if (const auto* disc = std::get_if<Canvas::Disc>(&element)) {
+        const auto place = [](const std::vector<double>& lines, double at) {
+          return std::count_if(lines.begin(), lines.end(), [&](double line) { return line < at; });
+        };
+        EXPECT_TRUE(cells.insert({place(across, disc->center.x), place(up, disc->center.y)}).second) << name;
+      }
+    }
+    EXPECT_EQ((across.size() + 1) * (up.size() + 1), count) << name;
+    EXPECT_EQ(cells.size(), count) << name;
+  }
 }
 
 TEST(PointsFigure, TwentyFourPanelsFitAPage) {
