@@ -117,7 +117,8 @@ TEST_F(MeasuredFigures, MoreValuesThanMemoryAreRefusedBeforeTheWork) {
   const Ended ended = command({"figure", "spectrum", "--samplers", "independent", "--samples", "1024", "--replicates",
                                "4096", "--out", path("x.svg")});
   EXPECT_EQ(ended.code, 2);
-  EXPECT_THAT(ended.err, HasSubstr("68161536 values are more than the 33554432 that are held"));  // 129 · 129 · 4096
+  EXPECT_THAT(ended.err,
+              HasSubstr("its 68161536 values of all replicates are more than the 33554432"));  // 129 · 129 · 4096
   EXPECT_LT(ended.seconds, 5);
 }
 
