@@ -121,7 +121,10 @@ RateResult fit_line(const Plan& plan, std::span<const Reference> references, std
     if (!kept) mse[j].push_back(line[j].data.mse.mean);
   }
   const double unit = first.precision == Precision::kF32 ? 0x1p-24 : 0x1p-53;
-  const double rounding = unit * std::fabs(reference.mean);
+  // Values are as large as their root mean square, however small their mean.
+  const double known = plan.scenes[first.scene].source->variance().value_or(0),
+               variance = std::isfinite(known) ? known : 0;
+  const double rounding = unit * std::sqrt(reference.mean * reference.mean + variance);
   RateResult rate;
   rate.first_cell = begin;
   const std::string name = cell_name(plan, first);
