@@ -120,6 +120,12 @@ TEST_F(MeasuredFigures, MoreValuesThanMemoryAreRefusedBeforeTheWork) {
   EXPECT_THAT(ended.err,
               HasSubstr("its 68161536 values of all replicates are more than the 33554432"));  // 129 · 129 · 4096
   EXPECT_LT(ended.seconds, 5);
+  // Four samplers, each of which alone would do.
+  const Ended four = command({"figure", "spectrum", "--samplers", "independent,jittered,halton-owen,n-rooks",
+                              "--samples", "1024", "--replicates", "1024", "--out", path("x.svg")});
+  EXPECT_EQ(four.code, 2);
+  EXPECT_THAT(four.err, HasSubstr("68161536 values are more than the 33554432 that are held; ask for fewer"));
+  EXPECT_LT(four.seconds, 5);
 }
 
 TEST_F(MeasuredFigures, TheSameBytesWhateverTheThreads) {
