@@ -29,6 +29,9 @@ struct Range {
 
 bool drawn(const ChartPoint& p, const ChartStyle& style) { return std::isfinite(p.y) && (!style.log || p.y > 0); }
 
+/// A lone curve needs none to be told from others.
+bool has_markers(const LineChart& chart) { return chart.style.intervals == Intervals::kBars || chart.lines.size() > 1; }
+
 bool power_of_two(double x) { return x >= 1 && std::exp2(std::round(std::log2(x))) == x; }
 
 Axis log_x_axis(const Range& range, bool powers_of_two, const std::string& label) {
@@ -240,8 +243,7 @@ void draw_chart(Canvas& canvas, const Axes& axes, const std::optional<Axis>& x_a
   draw_guides(canvas, axes, chart);
   axes.draw_frame(canvas);
   if (x_above) draw_x_above(canvas, axes, *x_above);
-  const bool markers = chart.style.intervals == Intervals::kBars || chart.lines.size() > 1;
-  for (const ChartLine& line : chart.lines) draw_line(canvas, axes, chart.style, line, markers);
+  for (const ChartLine& line : chart.lines) draw_line(canvas, axes, chart.style, line, has_markers(chart));
 }
 
 double legend_width(const LineChart& chart) {
@@ -261,7 +263,7 @@ void draw_legend(Canvas& canvas, const LineChart& chart, Position at, double wid
     const Look& look = looks()[line.look];
     const double y = at.y - 0.36 * kSmallSize;
     canvas.line({{at.x, y}, {at.x + kSample, y}}, {look.ink, 0.9, look.dashes});
-    draw_marker(canvas, {at.x + kSample / 2, y}, 1.7, look);
+    if (has_markers(chart)) draw_marker(canvas, {at.x + kSample / 2, y}, 1.7, look);
     const double note_width = line.note.empty() ? 0 : text_width(line.note, kSmallSize) + 4;
     canvas.text({at.x + kSample + 3, at.y}, fitted(line.label, kSmallSize, width - kSample - 3 - note_width),
                 {.size = kSmallSize});

@@ -97,9 +97,7 @@ std::vector<ChartLine> curve_lines(const std::vector<MeasuredMean>& means, const
 LinePage pair_correlation_page(const std::vector<MeasuredMean>& means, bool side_by_side) {
   LinePage page;
   page.title = "Pair correlation";
-  page.caption =
-      "Bands: 95 % intervals of the mean over replicates. Grey line: 1, independent points. Distances are "
-      "toroidal.";
+  page.caption = "Grey line: 1, independent points. Distances are toroidal.";
   const int dims = means.empty() ? 2 : dims_of(means.front());
   ChartStyle style;
   style.x_label = dims == 1   ? "distance r · N"

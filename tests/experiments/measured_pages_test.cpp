@@ -96,6 +96,11 @@ TEST(MeasuredPages, SideBySideEachSamplerHasADiagramOfTheSameScales) {
                                               points_named("c", 1)};
   const std::vector<MeasuredMean> means = correlations(points);
   EXPECT_THAT(pair_correlation_page(means, false).charts, SizeIs(1));
+  EXPECT_THAT(pair_correlation_page(means, false).caption, HasSubstr("Bands: 95 % intervals"));
+  const std::vector<MeasuredPoints> one = {points_named("c", 1)};
+  const LinePage bare = pair_correlation_page(correlations(one), false);
+  EXPECT_THAT(bare.caption, Not(HasSubstr("Bands")));
+  EXPECT_TRUE(parsed(draw_line_page(bare)).select_nodes("//circle").empty());  // a lone curve needs no marker
   const LinePage page = pair_correlation_page(means, true);
   ASSERT_THAT(page.charts, SizeIs(3));
   const auto document = parsed(draw_line_page(page));
