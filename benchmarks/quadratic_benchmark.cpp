@@ -3,7 +3,7 @@
 // which one addition waits for the last, so about 4 cycles a pair; the integers in O(N log N) touch 32 bytes for each
 // of log₂ N bits and point, and 6 products of 128 bits a point: about 150 cycles a point at N = 2¹⁴, 400 times less.
 // Then each measure at growing N with the slope of log time against log N: about 1 (and a logarithm) in the plane, 2
-// above.
+// above; of the t-value of a plane net, which takes N (log N)², 1.19.
 #include <benchmark/benchmark.h>
 #include <time.h>
 
@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "analysis/quadratic_discrepancy.h"
+#include "analysis/t_value.h"
 
 namespace halfslope {
 namespace {
@@ -78,14 +79,14 @@ BENCHMARK(l2_star_against_plain_loop)
     ->Unit(benchmark::kMicrosecond);
 
 /// Times at the Ns of the arguments' range, and their slope.
-template <double (*kMeasure)(const PointSet&)>
+template <double (*kMeasure)(const PointSet&), Columns (*kPoints)(std::size_t, std::size_t) = random_points>
 void cost(benchmark::State& state) {
   const auto dims = static_cast<std::size_t>(state.range(0));
   const int least = static_cast<int>(state.range(1)), most = static_cast<int>(state.range(2));
   std::vector<double> best(static_cast<std::size_t>(most - least + 1), std::numeric_limits<double>::infinity());
   for (auto _ : state) {
     for (int m = least; m <= most; ++m) {
-      const Columns points = random_points(std::size_t{1} << m, dims);
+      const Columns points = kPoints(std::size_t{1} << m, dims);
       double& fastest = best[static_cast<std::size_t>(m - least)];
       fastest = std::min(fastest, seconds([&] { benchmark::DoNotOptimize(kMeasure(view(points))); }));
     }
@@ -110,6 +111,23 @@ BENCHMARK_TEMPLATE(cost, symmetric_l2_discrepancy)->Name("cost/symmetric-l2")->A
 BENCHMARK_TEMPLATE(cost, extreme_l2_discrepancy)->Name("cost/extreme-l2")->Apply(costs);
 BENCHMARK_TEMPLATE(cost, periodic_l2_discrepancy)->Name("cost/periodic-l2")->Apply(costs);
 BENCHMARK_TEMPLATE(cost, diaphony)->Name("cost/diaphony")->Apply(costs);
+
+/// Hammersley's net, of which all shapes of intervals must be counted: random points are done with the first.
+Columns net(std::size_t count, std::size_t /*dims*/) {
+  Columns columns(2, std::vector<double>(count));
+  for (std::size_t i = 0; i < count; ++i) {
+    columns[0][i] = static_cast<double>(i) / static_cast<double>(count);
+    double digit = 0.5;
+    for (std::size_t rest = i; rest > 0; rest /= 2, digit /= 2) columns[1][i] += static_cast<double>(rest % 2) * digit;
+  }
+  return columns;
+}
+double counted_t_value(const PointSet& points) { return t_value(points, 2); }
+BENCHMARK_TEMPLATE(cost, counted_t_value, net)
+    ->Name("cost/t-value")
+    ->Args({2, 12, 18})
+    ->Iterations(3)
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace halfslope

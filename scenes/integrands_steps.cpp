@@ -84,7 +84,8 @@ IntegrandRows step_integrands() {
       row("halfplane", "1 where y < x/phi^2 + 1/5, phi the golden ratio; integral 1/(2 phi^2) + 1/5",
           "an edge of irrational slope that no grid meets again", step(1 - phi / 2 + 0.2)),
       row_of_dims("halfspace", 1, 6, "1 on one side of a plane through the unit cube of 1 to 6 dimensions",
-                  "Cho & Kim, Volume of hypercubes clipped by hyperplanes and combinatorial identities (2020)", halfspace),
+                  "Cho & Kim, Volume of hypercubes clipped by hyperplanes and combinatorial identities (2020)",
+                  halfspace),
       row_of_dims("simplex", 1, kMostIntegrandDims, "1 where x_1 + ... + x_d < d/2; integral 1/2",
                   "Hall, The distribution of means for samples of size N (1927)",
                   [](int d) {
