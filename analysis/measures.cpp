@@ -19,8 +19,8 @@ constexpr std::size_t kAnyDims = std::numeric_limits<std::size_t>::max();
 /// A measure without parameters that is one number, exact.
 template <double (*kMeasure)(const PointSet&)>
 MeasureInfo exact(std::string name, std::string description, std::string reference, std::size_t max_dims,
-                  std::string (*refusal)(std::size_t count, std::size_t dims)) {
-  MeasureInfo info = {std::move(name), std::move(description), std::move(reference), max_dims, {}, false, {}};
+                  std::string (*refusal)(std::size_t count, std::size_t dims), std::size_t min_dims = 1) {
+  MeasureInfo info = {std::move(name), std::move(description), std::move(reference), max_dims, {}, false, {}, min_dims};
   info.make = [name = info.name, refusal](const std::string&, const Parameters&) {
     return Measure{name, refusal, [name](std::size_t, std::size_t) { return std::vector{name}; },
                    [](const PointSet& points) {
@@ -159,11 +159,11 @@ std::span<const MeasureInfo> measure_catalogue() {
       exact<dispersion>(
           "dispersion", "radius of the largest circle centred in the unit square that holds no point",
           "H. Niederreiter, \"Random Number Generation and Quasi-Monte Carlo Methods\", 1992, definition 6.2", 2,
-          dispersion_refusal),
+          dispersion_refusal, 2),
       exact<dispersion_toroidal>(
           "dispersion-toroidal", "radius of the largest circle on the torus that holds no point",
           "H. Niederreiter, \"Random Number Generation and Quasi-Monte Carlo Methods\", 1992, definition 6.2", 2,
-          dispersion_refusal),
+          dispersion_refusal, 2),
       {"pcf",
        "pair correlation: pairs at each toroidal distance, over those expected of independent points",
        "D. Stoyan, W. S. Kendall, J. Mecke, \"Stochastic Geometry and its Applications\", 1995, section 4.5",
@@ -177,21 +177,24 @@ std::span<const MeasureInfo> measure_catalogue() {
        2,
        {{"size", 64}},
        true,
-       make_spectrum},
+       make_spectrum,
+       2},
       {"radial-spectrum",
        "mean power over each ring of frequencies, round(|k|) = f",
        "R. A. Ulichney, \"Dithering with blue noise\", Proc. IEEE 76(1), 1988",
        2,
        {{"size", 64}},
        true,
-       make_radial_spectrum},
+       make_radial_spectrum,
+       2},
       {"anisotropy",
        "variance of the power over each ring, over its squared mean, in dB",
        "R. A. Ulichney, \"Dithering with blue noise\", Proc. IEEE 76(1), 1988",
        2,
        {{"size", 64}},
        true,
-       make_anisotropy},
+       make_anisotropy,
+       2},
   };
   return catalogue;
 }
@@ -210,7 +213,8 @@ Measure make_measure(const std::string& name) {
     Measure measure = info.make(subject, parse_parameters(subject, split.parameters, info.parameters));
     measure.name = name;
     const auto refusal = measure.refusal;
-    measure.refusal = [refusal, most = info.max_dims](std::size_t count, std::size_t dims) {
+    measure.refusal = [refusal, least = info.min_dims, most = info.max_dims](std::size_t count, std::size_t dims) {
+      if (least == most && dims != most) return fmt::format("it takes points of {} dimensions", most);
       return dims > most ? fmt::format("it takes at most {} dimensions", most) : refusal(count, dims);
     };
     return measure;

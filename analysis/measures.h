@@ -45,6 +45,7 @@ struct MeasureInfo {
   bool curve = false;                      ///< several values of one point set
   /// `subject` begins messages about parameters that are out of range.
   std::function<Measure(const std::string& subject, const Parameters& parameters)> make;
+  std::size_t min_dims = 1;
 };
 
 /// Every measure, in the order of the tables.

@@ -130,10 +130,17 @@ std::vector<double> radial_spectrum(const PowerSpectrum& spectrum) {
   return means;
 }
 
+// A power of 0 is the rounding of sums of N terms, squared over N: about 1e-31 N (P(0, 0) = N).
+constexpr double kNoPower = 1e-26;
+
 std::vector<double> anisotropy(const PowerSpectrum& spectrum) {
   std::vector<double> decibels;
   for (const auto& ring : half_rings(spectrum)) {
     const double mean = mean_of(ring);
+    if (mean < kNoPower * spectrum.at(0, 0)) {
+      decibels.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
     CompensatedSum squares;
     for (const double value : ring) squares.add((value - mean) * (value - mean));
     const double variance = squares.value() / static_cast<double>(ring.size() - 1);

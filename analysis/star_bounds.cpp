@@ -14,7 +14,7 @@ namespace halfslope {
 namespace {
 
 // A coordinate takes 100 bytes, and both searches up to a gigabyte each.
-constexpr std::size_t kMostCoordinates = std::size_t{1} << 24;
+constexpr std::size_t kMostCoordinates = std::size_t{1} << 24, kMostSearched = std::size_t{1} << 22;
 constexpr std::uint64_t kMostSteps = 80000;  // of a walk: more find little more
 
 /// The largest excess found for an eighth of the work at most. (A step takes as long as about 40 looks at a point in
@@ -107,9 +107,11 @@ std::string_view star_method(const StarBounds& bounds) {
 }
 
 std::string star_refusal(std::size_t count, std::size_t dims) {
-  if (count <= kMostCoordinates / dims) return {};
-  return fmt::format("it takes at most {} coordinates (N times the dimensions), for which it needs 4 GB",
-                     kMostCoordinates);
+  const std::size_t most = dims <= 2 ? kMostCoordinates : kMostSearched;
+  if (count <= most / dims) return {};
+  return fmt::format(
+      "it takes at most {} coordinates (N times the dimensions) in {} dimensions, for which it needs {} GB", most, dims,
+      dims <= 2 ? 4 : 1);
 }
 
 }  // namespace halfslope

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <new>
@@ -33,7 +34,7 @@ std::string key_help(const std::string& key) {
       {"resolution", "WIDTH,HEIGHT; default: the scene's own"},
       {"pixels", "all, or how many to measure (default all)"},
       {"images", "sample counts to write EXRs for, or none (default none)"},
-      {"precision", "f32, f64 or both (default f32)"},
+      {"precision", "f32, f64 or f32,f64 (default f32)"},
       {"measures", "of the samplers' points, see `halfslope list measures`, or none (default none)"},
   };
   const auto found = kHelp.find(key);
@@ -66,6 +67,20 @@ std::string bash_completion(const CLI::App& app) {
          "\" ;;\n    esac ;;\n  esac\n"
          "  COMPREPLY=($(compgen -W \"$words\" -- \"$current\") $(compgen -f -- \"$current\"))\n}\n"
          "complete -o filenames -F _halfslope halfslope\n";
+}
+
+/// Refuses what is no whole number from 0 to 2^64 - 1: converted, it would silently become another one.
+const CLI::Validator& whole_number() {
+  static const CLI::Validator validator(
+      [](std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data(), end, value);
+        if (error == std::errc() && rest == end) return std::string();
+        return fmt::format("found '{}'; allowed: an integer from 0 to 2^64 - 1", text);
+      },
+      "");
+  return validator;
 }
 
 int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue) {
@@ -106,11 +121,17 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   PointsArguments points;
   CLI::App* points_app = app.add_subcommand("points", "print a sampler's points as CSV");
   points_app->add_option("--sampler", points.sampler, "see `halfslope list samplers`")->required()->type_name("NAME");
-  points_app->add_option("--count", points.count, "number of points N")->capture_default_str()->type_name("N");
+  points_app->add_option("--count", points.count, "number of points N")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(whole_number());
   points_app->add_option("--dims", points.dims, "dimensions, grouped in pairs")->capture_default_str()->type_name("D");
   points_app->add_option("--replicate", points.replicate, "which randomisation")->capture_default_str()->type_name("K");
   points_app->add_option("--pixel", points.pixel, "which pixel's")->capture_default_str()->type_name("P");
-  points_app->add_option("--seed", points.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  points_app->add_option("--seed", points.seed, "of the random numbers")
+      ->capture_default_str()
+      ->type_name("S")
+      ->check(whole_number());
   points_app->add_option("--precision", points.precision, "f32 or f64")->capture_default_str()->type_name("P");
 
   MeasureArguments measure;
@@ -133,7 +154,10 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       ->add_option("--replicates", measure.replicates,
                    "randomisations (default 1, with --summary 64; of files: the sets)")
       ->type_name("R");
-  measure_app->add_option("--seed", measure.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  measure_app->add_option("--seed", measure.seed, "of the random numbers")
+      ->capture_default_str()
+      ->type_name("S")
+      ->check(whole_number());
   CLI::Option* wrap = measure_app->add_flag("--wrap", measure.wrap, "take points outside [0,1) modulo 1");
   measure_app->add_flag("--clamp", measure.clamp, "move points outside [0,1) to its nearest end")->excludes(wrap);
   measure_app->add_flag("--summary", measure.summary, "mean over replicates and its 95 % interval instead of each");
@@ -152,7 +176,10 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       ->capture_default_str()
       ->type_name("NAME");
   render_app->add_option("--samples", render.samples, "N per pixel")->capture_default_str()->type_name("N");
-  render_app->add_option("--seed", render.seed, "of the random numbers")->capture_default_str()->type_name("S");
+  render_app->add_option("--seed", render.seed, "of the random numbers")
+      ->capture_default_str()
+      ->type_name("S")
+      ->check(whole_number());
   render_app->add_option("--replicate", render.replicate, "which randomisation")->capture_default_str()->type_name("K");
   render_app->add_option("--resolution", render.resolution, "WIDTH,HEIGHT")->type_name("W,H");
   render_app->add_option("--precision", render.precision, "f32 or f64")->capture_default_str()->type_name("P");
@@ -279,7 +306,7 @@ int command_line(int argc, const char* const* argv, const Catalogue& catalogue) 
     message("halfslope: {}\n", error.what());
     code = static_cast<int>(error.code());
   } catch (const std::bad_alloc&) {
-    message("halfslope: out of memory; ask for fewer pixels or replicates\n");
+    message("halfslope: out of memory; ask for fewer points, pixels or replicates\n");
   } catch (const std::exception& error) {
     message("halfslope: {}\n", error.what());
   }

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/csv.h"
 #include "core/error.h"
@@ -28,7 +29,8 @@ constexpr std::int64_t kSummaryReplicates = 64;
 std::vector<std::string> all_measures(int dims) {
   std::vector<std::string> names;
   for (const MeasureInfo& info : measure_catalogue()) {
-    if (!info.curve && static_cast<std::size_t>(dims) <= info.max_dims) names.push_back(info.name);
+    const auto d = static_cast<std::size_t>(dims);
+    if (!info.curve && info.min_dims <= d && d <= info.max_dims) names.push_back(info.name);
   }
   return names;
 }
@@ -96,7 +98,7 @@ void check_counts(const MeasuresRequest& request, const SamplerCatalogue& sample
     }
   }
   if (plan.rows() == 0 || (!left_out.empty() && !request.counts.is_range))
-    fail(ExitCode::kUsage, "{}", left_out.empty() ? "nothing to measure" : left_out.front());
+    fail(ExitCode::kUsage, "{}nothing was measured", left_out.empty() ? "" : left_out.front() + "; ");
 }
 
 void print(const std::string& text) {
@@ -152,6 +154,19 @@ void print_summary(const MeasuresPlan& plan, const Measurements& measured, bool 
   printer.finish();
 }
 
+/// Tells of points that coincide, where distances were asked for.
+void note_coincidences(const MeasuresPlan& plan, const Measurements& measured) {
+  std::set<std::string> told;
+  visit_measurements(plan, measured,
+                     [&](const MeasuredPoints& p, std::uint64_t count, std::int64_t replicate, const std::string& name,
+                         const MeasuredValue& value) {
+                       if (!name.starts_with("min-distance") || value.value != 0) return;
+                       if (!told.insert(fmt::format("{} {}", p.sampler, count)).second) return;
+                       message("halfslope: {}, N = {}, replicate {}: points coincide, so their distance is 0\n",
+                               p.sampler, count, replicate);
+                     });
+}
+
 }  // namespace
 
 int measure_command(const MeasureArguments& a, const Catalogue& catalogue) {
@@ -180,6 +195,7 @@ int measure_command(const MeasureArguments& a, const Catalogue& catalogue) {
     for (const std::string& line : left_out) message("halfslope: {}\n", line);
   }
   const Measurements measured = measure_points(plan, catalogue.samplers, a.threads, "measure", a.quiet);
+  if (!a.quiet) note_coincidences(plan, measured);
   if (!a.exr.empty()) write_spectrum_image(a.exr, plan, measured);
   a.summary ? print_summary(plan, measured, a.json) : print_replicates(plan, measured, a.json);
   return static_cast<int>(ExitCode::kDone);

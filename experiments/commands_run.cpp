@@ -63,10 +63,11 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
       std::string name = m.name;  // parameters as "pcf[:bins=200,max=...]"
       for (const Parameter& p : m.parameters)
         name += fmt::format("{}{}={}", name == m.name ? "[:" : ",", p.name, p.fallback.value_or(0));
-      rows.push_back(
-          {m.parameters.empty() ? name : name + "]", m.description, m.reference,
-           fmt::format("{}{}", m.curve ? "a curve, " : "",
-                       any ? "any number of dimensions" : fmt::format("at most {} dimensions", m.max_dims))});
+      rows.push_back({m.parameters.empty() ? name : name + "]", m.description, m.reference,
+                      fmt::format("{}{}", m.curve ? "a curve, " : "",
+                                  any                        ? "any number of dimensions"
+                                  : m.min_dims == m.max_dims ? fmt::format("{} dimensions", m.max_dims)
+                                                             : fmt::format("at most {} dimensions", m.max_dims))});
     }
   } else if (what == "figures") {
     for (const FigureInfo& f : figure_catalogue()) rows.push_back({f.name, f.description, f.reference, ""});

@@ -176,8 +176,14 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   write("convergence.csv", convergence_csv(plan, outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
   // Last, since it is not part of the journal: what an interruption costs is these alone.
-  outcome.measured =
-      measure_points(plan.measures, catalogue.samplers, options.threads, spec.name + ", discrepancy", options.quiet);
+  try {
+    outcome.measured =
+        measure_points(plan.measures, catalogue.samplers, options.threads, spec.name + ", discrepancy", options.quiet);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kInterrupted) throw;
+    fail(ExitCode::kInterrupted,
+         "{}; everything else is done and written: run the same command again for discrepancy.csv", error.what());
+  }
   if (plan.measures.rows() > 0) {
     write_discrepancy_csv(folder.path("discrepancy.csv"), plan.measures, outcome.measured);
   } else {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 
 #include "core/atomic_file.h"
 #include "core/csv.h"
@@ -20,7 +21,7 @@ namespace {
 // than so many coordinates, or one set.
 constexpr std::uint64_t kHeld = std::uint64_t{1} << 19;
 constexpr int kBlock = 256;
-// Threads at work on sets above kHeld, each of which takes up to 200 MB.
+// Threads at work on sets above kHeld, each of which takes some hundred MB.
 constexpr int kLargeAtOnce = 4;
 
 /// Some replicates of a sampler's points at one N; of a sequence, at every N.
@@ -97,7 +98,16 @@ std::vector<std::size_t> first_rows(const MeasuresPlan& plan) {
 void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const Task& task,
              std::span<MeasuredValue> rows, Progress& progress) {
   const MeasuredPoints& points = plan.points[task.points];
-  const Columns columns(*samplers.make(points.sampler), points, task);
+  const auto by_net = [&](std::size_t m, std::uint64_t count) {
+    const Measure& measure = plan.measures[m];
+    return measure.takes_net && points.matrices && measure.takes_net(*points.matrices, count);
+  };
+  bool needs_points = false;
+  for (std::size_t n = task.first_count; n < task.end_count; ++n) {
+    for (const std::size_t m : points.counts[n].measures) needs_points |= !by_net(m, points.counts[n].count);
+  }
+  std::optional<Columns> columns;
+  if (needs_points) columns.emplace(*samplers.make(points.sampler), points, task);
   std::size_t first = 0;  // row of the first replicate at this N
   for (std::size_t n = 0; n < task.first_count; ++n)
     first += points.counts[n].rows.size() * static_cast<std::size_t>(points.replicates);
@@ -106,18 +116,17 @@ void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const T
     // What follows from generator matrices is the same for all replicates.
     std::map<std::size_t, std::vector<MeasuredValue>> of_net;
     for (const std::size_t m : counted.measures) {
-      const Measure& measure = plan.measures[m];
-      if (measure.takes_net && points.matrices && measure.takes_net(*points.matrices, counted.count))
-        of_net[m] = measure.net_values(*points.matrices, counted.count);
+      if (by_net(m, counted.count)) of_net[m] = plan.measures[m].net_values(*points.matrices, counted.count);
     }
     for (int lane = 0; lane < task.replicates && !interrupted(); ++lane) {
-      const PointSet set = columns.prefix(lane, counted.count);
       auto row =
           rows.begin() + static_cast<std::ptrdiff_t>(first + static_cast<std::size_t>(task.first_replicate + lane) *
                                                                  counted.rows.size());
       for (const std::size_t m : counted.measures) {
         const auto net = of_net.find(m);
-        row = std::ranges::copy(net == of_net.end() ? plan.measures[m].values(set) : net->second, row).out;
+        const auto values =
+            net == of_net.end() ? plan.measures[m].values(columns->prefix(lane, counted.count)) : net->second;
+        row = std::ranges::copy(values, row).out;
       }
       progress.advance(static_cast<double>(counted.count));
     }
@@ -157,9 +166,7 @@ Measurements measure_points(const MeasuresPlan& plan, const SamplerCatalogue& sa
     tbb::task_arena(std::min(count, kLargeAtOnce)).execute([&] { run(large, tasks.end()); });
   });
   if (interrupted()) {
-    fail(ExitCode::kInterrupted,
-         "interrupted while the samplers' points were measured; everything else is done and written: run the same "
-         "command again for discrepancy.csv");
+    fail(ExitCode::kInterrupted, "interrupted while points were measured");
   }
   progress.finish();
   return measured;

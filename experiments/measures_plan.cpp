@@ -12,7 +12,7 @@ namespace {
 
 // A set of these and the tree over it take 200 MB, and some seconds.
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 20;
-// Of one set; as many as there are threads may be held at once.
+// Of one set; up to four are held at once.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 31;
 // 32 bytes each, so 1 GB.
 constexpr std::uint64_t kMostValues = std::uint64_t{1} << 25;
@@ -23,7 +23,7 @@ class LeftOut {
   explicit LeftOut(std::vector<std::string>& lines) : lines_(lines) {}
   ~LeftOut() {
     for (const Reason& r : reasons_)
-      lines_.push_back(fmt::format("discrepancy: {}N = {}{}", r.before, joined(r.counts), r.after));
+      lines_.push_back(fmt::format("measures: {}N = {}{}", r.before, joined(r.counts), r.after));
   }
   LeftOut(const LeftOut&) = delete;
   LeftOut& operator=(const LeftOut&) = delete;
@@ -91,7 +91,7 @@ MeasuredPoints plan_points(const MeasuresRequest& request, const Sampler& sample
   MeasuredPoints points = {info.name, layout, info.sequence, {}, 1, stream_key(request.seed, info.name, "run")};
   points.replicates = std::min(info.replicates_of(request.replicates), kMostKept);
   if (info.max_dims < request.dims) {
-    lines.push_back(fmt::format("discrepancy: sampler '{}' has at most {} dimension{}, not {}: left out", info.name,
+    lines.push_back(fmt::format("measures: sampler '{}' has at most {} dimension{}, not {}: left out", info.name,
                                 info.max_dims, info.max_dims == 1 ? "" : "s", request.dims));
     return points;
   }
@@ -143,7 +143,7 @@ MeasuresPlan plan_measures(const MeasuresRequest& request, const SamplerCatalogu
     most = std::max(most, sampler->info().replicates_of(request.replicates));
   }
   if (most > kMostKept) {
-    left_out.push_back(fmt::format("discrepancy: replicates {} to {} left out: the first {} are measured", kMostKept,
+    left_out.push_back(fmt::format("measures: replicates {} to {} left out: the first {} are measured", kMostKept,
                                    most - 1, kMostKept));
   }
   return plan;

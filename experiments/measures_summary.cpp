@@ -27,7 +27,11 @@ std::vector<MeasuredMean> measured_means(const MeasuresPlan& plan, const Measure
           lower.add(one.lower);
           upper.add(one.upper);
         }
-        const std::string method(measured[first + k].method);
+        std::string method(measured[first + k].method);
+        for (std::size_t r = 1; r < replicates; ++r) {
+          const std::string_view other = measured[first + r * n.rows.size() + k].method;
+          if (method.find(other) == std::string::npos) method += fmt::format(" or {}", other);
+        }
         const auto below = t_interval(lower), above = t_interval(upper);
         means.push_back({&p, n.count, n.rows[k], value.mean, below ? below->lo : lower.mean,
                          above ? above->hi : upper.mean,

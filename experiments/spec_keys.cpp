@@ -159,7 +159,10 @@ void set_measures(Spec& spec, const Key& key, const SpecValue& value) {
       try {
         make_measure(name);
       } catch (const Error& error) {
-        refuse(key, value, item.place, error.what());
+        // Of a parameter the message says already what is allowed.
+        if (measure_rank(name) == measure_names().size()) refuse(key, value, item.place, error.what());
+        const bool flag = value.code == ExitCode::kUsage;
+        fail(value.code, "{}: {}{}", item.place, flag ? "" : "key 'measures': ", error.what());
       }
       append_unique(key, value, item, list, name);
     }

@@ -102,6 +102,8 @@ void add_family(SamplerCatalogue& catalogue, Outside outside, const char* descri
 }  // namespace
 
 std::string point_file_of(std::string_view sampler) {
+  constexpr std::string_view kPadded = "padded:";
+  while (sampler.starts_with(kPadded)) sampler.remove_prefix(kPadded.size());
   const std::size_t colon = sampler.find(':');
   for (const Outside outside : {Outside::kRefuse, Outside::kWrap, Outside::kClamp}) {
     if (colon != std::string_view::npos && sampler.substr(0, colon) == family_name(outside))

@@ -75,10 +75,14 @@ std::unique_ptr<Sampler> make_padded(const std::string& name, const SamplerCatal
   info.max_dims = kPaddedDims;
   info.max_count = std::min(info.max_count, kHeldPoints);
   info.rate = std::nullopt;
-  if (!info.randomised) {
+  const bool fixed = !info.randomised || info.replicates.has_value();
+  info.replicates = std::nullopt;
+  if (fixed) {
+    info.caveats = {
+        name + (info.randomised ? " holds given sets" : " is deterministic") +
+        ": replicates share pairs, and only their shuffles are random. Estimates are biased, and replicates "
+        "of a single pair of one set agree"};
     info.randomised = true;
-    info.caveats.push_back(name + " is deterministic: every group and every replicate has the same pairs, only their " +
-                           "shuffles are random. Estimates are biased, and replicates of a single pair agree");
   }
   return padded(
       std::move(info), [sampler] { return std::make_unique<HeldPairs>(sampler); }, kHeldPoints);

@@ -173,6 +173,27 @@ TEST(Anisotropy, OfIndependentPointsIsNear0dB) {
 }
 
 // Points on the diagonal have one power along each line kx + ky = const, and N where it is 0.
+// A lattice has no power but at its dual's frequencies, so on a ring without any there is nothing but rounding.
+TEST(Anisotropy, OfRingsWithoutPowerIsUndefined) {
+  constexpr std::size_t kSide = 12;  // whose coordinates are no binary fractions
+  Columns points(2);
+  for (std::size_t i = 0; i < kSide * kSide; ++i) {
+    points[0].push_back((static_cast<double>(i % kSide) + 0.5) / kSide);
+    points[1].push_back((static_cast<double>(i / kSide) + 0.5) / kSide);
+  }
+  const PowerSpectrum spectrum(view(points), 12);
+  const auto power = radial_spectrum(spectrum), decibels = anisotropy(spectrum);
+  for (std::size_t f = 1; f <= 12; ++f) {
+    if (f < 12) {
+      EXPECT_LT(power[f - 1], 1e-25) << f;
+      EXPECT_TRUE(std::isnan(decibels[f - 1])) << f;
+    } else {
+      EXPECT_GT(power[f - 1], 1) << f;  // 144 at (12, 0) and at (0, 12)
+      EXPECT_TRUE(std::isfinite(decibels[f - 1])) << f;
+    }
+  }
+}
+
 TEST(Anisotropy, OfPointsOnALine) {
   std::mt19937_64 random(8);
   Columns line = random_points(500, 1, random);

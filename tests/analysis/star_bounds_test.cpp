@@ -202,8 +202,8 @@ TEST(StarBounds, TheSamePointsGiveTheSameBits) {
 }
 
 TEST(StarBounds, RefuseWhatDoesNotFit) {
-  EXPECT_THAT(star_refusal(std::size_t{1} << 20, 16), IsEmpty());
-  EXPECT_THAT(star_refusal(std::size_t{1} << 20, 17), HasSubstr("4 GB"));
+  EXPECT_THAT(star_refusal(std::size_t{1} << 20, 4), IsEmpty());
+  EXPECT_THAT(star_refusal(std::size_t{1} << 20, 5), HasSubstr("1 GB"));
   EXPECT_THAT(star_refusal(std::size_t{1} << 23, 2), IsEmpty());
   EXPECT_THAT(star_refusal(std::size_t{1} << 25, 1), HasSubstr("16777216 coordinates"));
 }

@@ -1,10 +1,13 @@
 // measure: its tables, and what it refuses.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "analysis/discrepancy.h"
+#include "experiments/measures.h"
 #include "tests/experiments/command_line_fixture.h"
 #include "tests/experiments/csv_table.h"
 
@@ -15,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 class MeasureCommand : public CommandLine {
  protected:
@@ -103,6 +107,43 @@ TEST_F(MeasureCommand, LeavesOutOfARangeWhatItRefusesInAList) {
               HasSubstr("would take 8.39 GB in 1000 dimensions"));
 }
 
+// Pairs of a file, padded: the pairs are the file's in every replicate, the shuffles are not.
+TEST_F(MeasureCommand, PaddedFilesHaveAsManyReplicatesAsAsked) {
+  const std::string file = "padded:file:" + write("points.txt", "0.1 0.2\n0.5 0.5\n0.3 0.7\n0.9 0.6\n");
+  const CsvTable measured =
+      table({"--sampler", file, "--count", "4", "--dims", "4", "--replicates", "8", "--measures", "l2-star"});
+  ASSERT_EQ(measured.size(), 8u);
+  std::set<std::string> values;
+  for (std::size_t r = 0; r < 8; ++r) values.insert(measured.text(r, "value"));
+  EXPECT_GT(values.size(), 1u);
+  EXPECT_THAT(usage({"--sampler", file}), HasSubstr("--count is missing"));
+  EXPECT_EQ(measure({"--sampler", "padded:file:/nonexistent", "--count", "4"}).code, 3);
+}
+
+// Of mixed replicates, some of which are bounds, the method says both.
+TEST(MeasuredMeans, NameEveryMethod) {
+  MeasuresPlan plan;
+  plan.points.push_back({"s", {{2}}, false, {{4, {0}, {"star"}}}, 3, {}});
+  const Measurements measured = {{1, 1, 1, "exact"}, {2, 2, 6, "bounds"}, {3, 3, 3, "exact"}};
+  const auto means = measured_means(plan, measured);
+  ASSERT_EQ(means.size(), 1u);
+  EXPECT_EQ(means[0].value, 2);
+  EXPECT_EQ(means[0].method, "mean, 95 % t interval; each exact or bounds");
+  EXPECT_LT(means[0].lower, 2);
+  EXPECT_GT(means[0].upper, 10.0 / 3);
+}
+
+TEST_F(MeasureCommand, TellsOfPointsThatCoincide) {
+  const std::string file = write("points.txt", "0.1 0.2\n0.5 0.5\n0.1 0.2\n");
+  const Ended ended = command({"measure", "--points", file, "--measures", "min-distance", "--count", "2,3"});
+  EXPECT_EQ(ended.code, 0);
+  const CsvTable measured(ended.out);
+  EXPECT_NEAR(measured.number(0, "value"), 0.5, 1e-15);
+  EXPECT_EQ(measured.text(1, "value"), "0");
+  EXPECT_THAT(ended.err, HasSubstr(file + ", N = 3, replicate 0: points coincide"));
+  EXPECT_THAT(ended.err, Not(HasSubstr("N = 2")));
+}
+
 TEST_F(MeasureCommand, SaysWhatIsWrong) {
   EXPECT_THAT(usage({}), HasSubstr("give --sampler NAME"));
   EXPECT_THAT(usage({"--sampler", "halton"}), HasSubstr("--count is missing"));
@@ -113,6 +154,12 @@ TEST_F(MeasureCommand, SaysWhatIsWrong) {
   EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--measures", "stra"}), HasSubstr("did you mean 'star'"));
   EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--measures", "star:x=1"}),
               HasSubstr("it takes no parameters"));
+  EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--measures", "spectrum:sise=8"}),
+              AllOf(HasSubstr("did you mean 'size'"), Not(HasSubstr("star"))));
+  for (const char* seed : {"-1", "1.5", "99999999999999999999"}) {
+    EXPECT_THAT(usage({"--sampler", "n-rooks", "--count", "4", "--seed", seed}),
+                HasSubstr(fmt::format("found '{}'; allowed: an integer from 0 to 2^64 - 1", seed)));
+  }
   EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--measures", "none"}), HasSubstr("nothing to do"));
   EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--replicates", "0"}), HasSubstr("from 1 to 4096"));
   EXPECT_THAT(usage({"--sampler", "halton", "--count", "4", "--wrap"}), HasSubstr("--points"));

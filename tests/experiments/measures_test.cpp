@@ -199,12 +199,12 @@ TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   spec.replicates = 10000;
   std::vector<std::string> left_out;
   const MeasuresPlan plan = plan_measures(spec, catalogue.samplers, left_out);
-  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'line' has at most 1 dimension, not 2: left out"));
-  EXPECT_THAT(left_out, Contains("discrepancy: sampler 'diagonal' cannot make N = 1, 3 points in 2 dimensions: left "
+  EXPECT_THAT(left_out, Contains("measures: sampler 'line' has at most 1 dimension, not 2: left out"));
+  EXPECT_THAT(left_out, Contains("measures: sampler 'diagonal' cannot make N = 1, 3 points in 2 dimensions: left "
                                  "out"));
-  EXPECT_THAT(left_out, Contains("discrepancy: N = 2097152, 1099511627776: left out, since at most 1048576 points are "
+  EXPECT_THAT(left_out, Contains("measures: N = 2097152, 1099511627776: left out, since at most 1048576 points are "
                                  "measured"));
-  EXPECT_THAT(left_out, Contains("discrepancy: replicates 4096 to 9999 left out: the first 4096 are measured"));
+  EXPECT_THAT(left_out, Contains("measures: replicates 4096 to 9999 left out: the first 4096 are measured"));
   ASSERT_EQ(plan.points.size(), 3u);
   EXPECT_THAT(plan.points[0].counts, IsEmpty());
   EXPECT_THAT(counts_of(plan.points[1]), ElementsAre(2, 4, 1 << 20));
@@ -219,11 +219,11 @@ TEST(MeasuresPlan, SaysWhatIsLeftOut) {
   keys["samples"] = "1:16";
   const Plan ranged = make_plan(spec_of(keys), catalogue);
   for (const auto& lines : {ranged.left_out, ranged.skips})
-    EXPECT_THAT(lines, Contains("discrepancy: sampler 'diagonal' cannot make N = 1 points in 2 dimensions: left out"));
+    EXPECT_THAT(lines, Contains("measures: sampler 'diagonal' cannot make N = 1 points in 2 dimensions: left out"));
   keys.erase("measures");
   const Plan none = make_plan(spec_of(keys), catalogue);
   EXPECT_EQ(none.measures.rows(), 0u);
-  EXPECT_THAT(none.skips, Not(Contains(HasSubstr("discrepancy"))));
+  EXPECT_THAT(none.skips, Not(Contains(HasSubstr("measures:"))));
   EXPECT_THAT(describe_measures(none.measures), IsEmpty());
 }
 
@@ -260,7 +260,7 @@ TEST(Measures, StopForASignal) {
     ADD_FAILURE() << "went on";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::kInterrupted);
-    EXPECT_THAT(error.what(), HasSubstr("run the same command again for discrepancy.csv"));
+    EXPECT_THAT(error.what(), HasSubstr("interrupted while points were measured"));
   }
 }
 
