@@ -59,7 +59,7 @@ SampleCounts counts_of(const MeasureArguments& a, const std::vector<std::string>
     return spec.samples;
   }
   for (const std::string& name : names) {
-    const SamplerInfo& info = samplers.make(name)->info();
+    const SamplerInfo info = samplers.make(name)->info();  // a copy: the sampler is gone after this line
     if (!info.replicates && a.files.empty())
       fail(ExitCode::kUsage, "--count is missing: how many points, such as 1024, 16:1024 or a list");
     if (!point_file_of(name).empty()) spec.samples.counts.push_back(info.max_count);
