@@ -98,10 +98,7 @@ std::vector<std::size_t> first_rows(const MeasuresPlan& plan) {
 void measure(const MeasuresPlan& plan, const SamplerCatalogue& samplers, const Task& task,
              std::span<MeasuredValue> rows, Progress& progress) {
   const MeasuredPoints& points = plan.points[task.points];
-  const auto by_net = [&](std::size_t m, std::uint64_t count) {
-    const Measure& measure = plan.measures[m];
-    return measure.takes_net && points.matrices && measure.takes_net(*points.matrices, count);
-  };
+  const auto by_net = [&](std::size_t m, std::uint64_t count) { return points.net_gives(plan.measures[m], count); };
   bool needs_points = false;
   for (std::size_t n = task.first_count; n < task.end_count; ++n) {
     for (const std::size_t m : points.counts[n].measures) needs_points |= !by_net(m, points.counts[n].count);

@@ -47,6 +47,10 @@ struct MeasuredPoints {
   std::optional<GeneratorMatrices> matrices = std::nullopt;  ///< of a digital net: of as many points as are measured
 
   std::size_t rows() const;  ///< of discrepancy.csv
+  /// Whether the matrices alone give the measure of the first `count` points.
+  bool net_gives(const Measure& measure, std::uint64_t count) const {
+    return measure.takes_net && matrices && measure.takes_net(*matrices, count);
+  }
 };
 
 struct MeasuresPlan {

@@ -54,10 +54,6 @@ std::optional<GeneratorMatrices> matrices_of(const Sampler& sampler, int dims, s
   return sampler.generator_matrices(dims, digits);
 }
 
-bool takes_net(const Measure& measure, const MeasuredPoints& points, std::uint64_t count) {
-  return measure.takes_net && points.matrices && measure.takes_net(*points.matrices, count);
-}
-
 /// The measures that `count` of the points have, and what their values are called.
 MeasuredCount measured_count(const MeasuredPoints& points, std::span<const Measure> measures, std::uint64_t count,
                              LeftOut& left_out) {
@@ -65,7 +61,7 @@ MeasuredCount measured_count(const MeasuredPoints& points, std::span<const Measu
   MeasuredCount n = {count, {}, {}};
   for (std::size_t m = 0; m < measures.size(); ++m) {
     const std::string problem = measures[m].refusal(count, dims);
-    if (!problem.empty() && !takes_net(measures[m], points, count)) {
+    if (!problem.empty() && !points.net_gives(measures[m], count)) {
       left_out.add(measures[m].name + " at ", count, ": left out, since " + problem);
       continue;
     }
