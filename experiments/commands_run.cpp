@@ -124,11 +124,11 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
   const RunOutcome outcome =
       run_experiment(spec, catalogue, {out, arguments.threads, arguments.quiet, arguments.overwrite});
   if (arguments.json) {
-    fmt::print("{}", cells_json(outcome.plan, outcome.results));
+    fmt::print("{}", cells_json(outcome.results));
   } else if (!arguments.quiet) {
     const std::string measured = measures_summary(outcome.plan.measures, outcome.measured);
-    fmt::print("{}\n{}{}Tables and images: {}\n", summary(outcome.plan, outcome.results), measured,
-               measured.empty() ? "" : "\n", out);
+    fmt::print("{}\n{}{}Tables and images: {}\n", summary(outcome.results), measured, measured.empty() ? "" : "\n",
+               out);
   }
   if (outcome.invalid_cells > 0) {
     message("halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",

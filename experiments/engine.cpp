@@ -160,7 +160,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
         if (cell.image) write_cell_image(folder.path(), plan, cell, folded, references);
       },
       [&](const Cell& cell, const FoldedCell& folded) {
-        replicates.add(plan, cell, folded.data.per_replicate);
+        replicates.add(cell_name(plan, cell), folded.data.per_replicate);
         replicates_file.write(replicates.take_text());
       },
   };
@@ -171,9 +171,9 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     if (!text.empty()) write_file_atomically(folder.path(name), text);
   };
   write_reference_images(folder.path(), plan, references);
-  write("rates.csv", rates_csv(plan, outcome.results));
-  write("regions.csv", regions_csv(plan, outcome.results));
-  write("convergence.csv", convergence_csv(plan, outcome.results));
+  write("rates.csv", rates_csv(outcome.results));
+  write("regions.csv", regions_csv(outcome.results));
+  write("convergence.csv", convergence_csv(outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
   // Last, since it is not part of the journal: what an interruption costs is these alone.
   try {

@@ -66,7 +66,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   data.reference_se = reference.mean_se;
   data.reference_mse = reference.mean_variance;
   data.reference_relmse = mean_relative_variance(reference);
-  data.bootstrap_seed = hash_text(cell_name(plan, cell));
+  data.bootstrap_seed = hash_text(to_string(cell_name(plan, cell)));
   data.deterministic = !pass.randomised;
   data.infinite_variance = has_infinite_variance(*scene.source);
   const auto integrals = static_cast<double>(data.integrals);

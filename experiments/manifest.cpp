@@ -69,10 +69,9 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
       manifest["references"].back()["first_nonfinite_pixel"] = plan.scenes[s].pixels[*pixel];
   }
   manifest["invalid"] = Json::array();
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    const CellResult& result = results.cells[c];
+  for (const CellResult& result : results.cells) {
     if (!result.statistics.invalid) continue;
-    Json entry = {{"cell", cell_name(plan, plan.cells[c])}, {"nonfinite", result.statistics.nonfinite}};
+    Json entry = {{"cell", to_string(result.name)}, {"nonfinite", result.statistics.nonfinite}};
     if (result.statistics.nonfinite > 0) {
       entry["first_replicate"] = result.first_bad_replicate;
       entry["first_pixel"] = result.first_bad_pixel;
@@ -83,18 +82,17 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   return text_of(manifest);
 }
 
-std::string cells_json(const Plan& plan, const Results& results) {
+std::string cells_json(const Results& results) {
   Json cells = Json::array();
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    const Cell& cell = plan.cells[c];
-    const CellStatistics& s = results.cells[c].statistics;
-    cells.push_back({{"scene", plan.scenes[cell.scene].name},
-                     {"estimator", plan.scenes[cell.scene].estimators[cell.estimator].name},
-                     {"sampler", cell.sampler},
-                     {"precision", to_string(cell.precision)},
-                     {"samples", cell.samples},
-                     {"replicates", plan.passes[cell.pass].replicates},
-                     {"pixels", plan.scenes[cell.scene].pixels.size()},
+  for (const CellResult& cell : results.cells) {
+    const CellStatistics& s = cell.statistics;
+    cells.push_back({{"scene", cell.name.scene},
+                     {"estimator", cell.name.estimator},
+                     {"sampler", cell.name.sampler},
+                     {"precision", cell.name.precision},
+                     {"samples", cell.name.samples},
+                     {"replicates", cell.replicates},
+                     {"pixels", cell.pixels},
                      {"mean", optional(s.mean)},
                      {"reference", s.reference},
                      {"reference_se", s.reference_se},

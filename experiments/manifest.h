@@ -15,6 +15,6 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
                           const std::vector<Reference>& references, std::chrono::system_clock::time_point started);
 
 /// The summary as JSON: a list of objects with convergence.csv's column names.
-std::string cells_json(const Plan& plan, const Results& results);
+std::string cells_json(const Results& results);
 
 }  // namespace halfslope

@@ -235,10 +235,9 @@ bool has_infinite_variance(const IntegralSource& source) {
   return variance && std::isinf(*variance);
 }
 
-std::string cell_name(const Plan& plan, const Cell& cell) {
-  return fmt::format("{},{},{},{},{}", plan.scenes[cell.scene].name,
-                     plan.scenes[cell.scene].estimators[cell.estimator].name, cell.sampler, to_string(cell.precision),
-                     cell.samples);
+CellName cell_name(const Plan& plan, const Cell& cell) {
+  const PlannedScene& scene = plan.scenes[cell.scene];
+  return {scene.name, scene.estimators[cell.estimator].name, cell.sampler, to_string(cell.precision), cell.samples};
 }
 
 Plan make_plan(const Spec& spec, const Catalogue& catalogue) {

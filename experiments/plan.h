@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "estimators/estimator.h"
 #include "experiments/catalogue.h"
+#include "experiments/cell_name.h"
 #include "experiments/measures.h"
 #include "experiments/spec.h"
 
@@ -86,7 +87,6 @@ std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, 
 /// expectation then, and no rate.
 bool has_infinite_variance(const IntegralSource& source);
 
-/// "aligned-phong-cap:n=10,alpha=0.05,balance,halton-owen,f64,64": a cell in messages, and what seeds its bootstrap.
-std::string cell_name(const Plan& plan, const Cell& cell);
+CellName cell_name(const Plan& plan, const Cell& cell);
 
 }  // namespace halfslope

@@ -9,36 +9,50 @@
 
 #include "analysis/cell_statistics.h"
 #include "analysis/rates.h"
+#include "experiments/cell_name.h"
 #include "experiments/fold.h"
 #include "experiments/plan.h"
+#include "experiments/region_results.h"
 
 namespace halfslope {
 
-/// Errors over one part of the image: "all", what a shape covers ("plate1"), or that part of it whose mirror direction
-/// points nearest to one light ("plate1/light2").
-struct RegionResult {
-  std::string region;
-  std::int64_t pixels = 0;
-  std::optional<double> rmse, rmse_lo, rmse_hi, relmse, relmse_lo, relmse_hi;
+/// What is known of a cell before anything is measured.
+struct CellFacts {
+  bool deterministic = false;      ///< the sampler has one replicate
+  bool unbiased = false;           ///< it declares that its estimates are
+  bool infinite_variance = false;  ///< of the integrand: no squared error has an expectation
+  double rounding_mse = 0;         ///< square of the rounding error of values as large as these; 0: not known
+  std::optional<double> theory;    ///< the rate that theory gives
 };
 
+/// A row of convergence.csv with all that other tables are made of. It stands on its own: no plan, no journal, so
+/// images that another renderer wrote give one too.
 struct CellResult {
+  CellName name;
+  std::int64_t replicates = 0, pixels = 0;
+  CellFacts facts;
   CellStatistics statistics;
+  std::vector<double> replicate_mse;  ///< mean squared error of each, the reference's variance in it; empty above
+                                      ///< kMostKept replicates
+  double mse = 0;                     ///< their mean
   std::vector<RegionResult> regions;  ///< where the scene has several
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;
 };
 
-/// One line of convergence: the cells of a plan that differ in N only.
+/// One line of convergence: the cells that differ in N only.
 struct RateResult {
-  std::size_t first_cell;  ///< index into the plan's cells
+  std::size_t first_cell;  ///< index into the results' cells
   RateFit fit;
   std::optional<double> theory;
 };
 
 struct Results {
-  std::vector<CellResult> cells;  ///< as the plan's
-  std::vector<RateResult> rates;
+  std::vector<CellResult> cells;  ///< in the order of the tables; the cells of a line side by side
+  std::vector<RateResult> rates;  ///< in the order of the cells
 };
+
+/// The rates of every line of `cells`.
+std::vector<RateResult> fit_rates(const std::vector<CellResult>& cells);
 
 /// What is done with a folded cell beside keeping its statistics: its memory is given back at once, so that a run's
 /// does not grow with replicates or pixels.
@@ -49,7 +63,8 @@ struct CellVisitor {
   std::function<void(const Cell& cell, const FoldedCell& folded)> in_order;
 };
 
-/// Throws Error(kInterrupted) if a signal comes meanwhile.
+/// The cells and rates of a plan whose units are all in the journal. Throws Error(kInterrupted) if a signal comes
+/// meanwhile.
 Results collect_results(const Plan& plan, std::span<const Reference> references, const Journal& journal,
                         const SamplerCatalogue& samplers, int threads, const CellVisitor& visitor);
 

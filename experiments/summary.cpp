@@ -19,6 +19,10 @@ std::string counted(Count count, const char* thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }
 
+void note(std::vector<std::string>& names, const std::string& name) {
+  if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+}
+
 const RegionResult* find_region(const CellResult& cell, const std::string& name) {
   for (const RegionResult& region : cell.regions) {
     if (region.region == name) return &region;
@@ -28,58 +32,47 @@ const RegionResult* find_region(const CellResult& cell, const std::string& name)
 
 /// The cells of one scene and precision at one N.
 struct Slice {
-  std::size_t scene;
-  Precision precision;
   std::uint64_t samples;
-  std::vector<std::size_t> cells;
+  std::vector<const CellResult*> cells;
 };
 
-std::vector<Slice> largest_slices(const Plan& plan) {
+std::vector<Slice> largest_slices(const Results& results) {
   std::vector<Slice> slices;
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    const Cell& cell = plan.cells[c];
-    auto found = std::find_if(slices.begin(), slices.end(),
-                              [&](const Slice& s) { return s.scene == cell.scene && s.precision == cell.precision; });
-    if (found == slices.end()) found = slices.insert(found, {cell.scene, cell.precision, 0, {}});
-    if (cell.samples > found->samples) found->samples = cell.samples, found->cells.clear();
-    if (cell.samples == found->samples) found->cells.push_back(c);
+  for (const CellResult& cell : results.cells) {
+    auto found = std::ranges::find_if(slices, [&](const Slice& s) {
+      const CellName& other = s.cells.front()->name;
+      return other.scene == cell.name.scene && other.precision == cell.name.precision;
+    });
+    if (found == slices.end()) found = slices.insert(found, {cell.name.samples, {}});
+    if (cell.name.samples > found->samples) found->samples = cell.name.samples, found->cells.clear();
+    if (cell.name.samples == found->samples) found->cells.push_back(&cell);
   }
   return slices;
 }
 
-// "64 replicates"; "64 to 100 replicates" where a sampler's own are of another number. Those of which there is one
-// alone are marked in the table.
-std::string replicates_of(const Plan& plan, const Slice& slice) {
+// "64 replicates"; "64 to 100 replicates" where cells have others. Those of which there is one alone are marked in the
+// table.
+std::string replicates_of(const Slice& slice) {
   std::int64_t least = 0, most = 1;
-  for (const std::size_t c : slice.cells) {
-    const Pass& pass = plan.passes[plan.cells[c].pass];
-    if (!pass.randomised) continue;
-    least = least == 0 ? pass.replicates : std::min(least, pass.replicates);
-    most = std::max(most, pass.replicates);
+  for (const CellResult* cell : slice.cells) {
+    if (cell->facts.deterministic) continue;
+    least = least == 0 ? cell->replicates : std::min(least, cell->replicates);
+    most = std::max(most, cell->replicates);
   }
   return (least > 0 && least < most ? fmt::format("{} to ", least) : "") + counted(most, "replicate");
 }
 
-std::string main_table(const Plan& plan, const Results& results, const Slice& slice) {
+std::string main_table(const Results& results, const Slice& slice) {
   std::vector<std::vector<std::string>> rows = {
       {"sampler", "estimator", "rmse", "95 %", "relmse", "95 %", "rate", "95 %", "status"}};
-  for (const auto& sampler : [&] {
-         std::vector<std::string> names;
-         for (const std::size_t c : slice.cells) {
-           if (std::find(names.begin(), names.end(), plan.cells[c].sampler) == names.end())
-             names.push_back(plan.cells[c].sampler);
-         }
-         return names;
-       }()) {
-    for (const std::size_t c : slice.cells) {
-      const Cell& cell = plan.cells[c];
-      if (cell.sampler != sampler) continue;
-      const CellStatistics& s = results.cells[c].statistics;
-      const auto rate = std::find_if(results.rates.begin(), results.rates.end(), [&](const RateResult& r) {
-        const Cell& first = plan.cells[r.first_cell];
-        return first.scene == cell.scene && first.estimator == cell.estimator && first.sampler == cell.sampler &&
-               first.precision == cell.precision;
-      });
+  std::vector<std::string> samplers;
+  for (const CellResult* cell : slice.cells) note(samplers, cell->name.sampler);
+  for (const std::string& sampler : samplers) {
+    for (const CellResult* cell : slice.cells) {
+      if (cell->name.sampler != sampler) continue;
+      const CellStatistics& s = cell->statistics;
+      const auto rate = std::ranges::find_if(
+          results.rates, [&](const RateResult& r) { return same_line(results.cells[r.first_cell].name, cell->name); });
       std::string slope = "-", slope_interval;
       if (rate != results.rates.end() && rate->fit.rate) {
         slope = fmt::format("{:.2f}", *rate->fit.rate);
@@ -88,22 +81,21 @@ std::string main_table(const Plan& plan, const Results& results, const Slice& sl
       } else if (rate != results.rates.end() && rate->fit.samples_hi > 0) {
         slope_interval = rate->fit.status;  // why there is none; the row's own status speaks of this N alone
       }
-      rows.push_back({sampler, plan.scenes[cell.scene].estimators[cell.estimator].name, short_number(s.rmse),
-                      between(s.rmse_lo, s.rmse_hi), short_number(s.relmse), between(s.relmse_lo, s.relmse_hi), slope,
-                      slope_interval, s.status});
+      rows.push_back({sampler, cell->name.estimator, short_number(s.rmse), between(s.rmse_lo, s.rmse_hi),
+                      short_number(s.relmse), between(s.relmse_lo, s.relmse_hi), slope, slope_interval, s.status});
     }
   }
   return align(rows, 2);
 }
 
 // RMSE of each shape's pixels, a column an estimator, on one sampler.
-std::string shape_table(const Plan& plan, const Results& results, const Slice& slice, const std::string& sampler) {
+std::string shape_table(const Slice& slice, const std::string& sampler) {
   std::vector<std::vector<std::string>> rows = {{"pixels of"}};
   std::vector<const CellResult*> columns;
-  for (const std::size_t c : slice.cells) {
-    if (plan.cells[c].sampler != sampler) continue;
-    columns.push_back(&results.cells[c]);
-    rows[0].push_back(plan.scenes[slice.scene].estimators[plan.cells[c].estimator].name);
+  for (const CellResult* cell : slice.cells) {
+    if (cell->name.sampler != sampler) continue;
+    columns.push_back(cell);
+    rows[0].push_back(cell->name.estimator);
   }
   for (const RegionResult& region : columns.front()->regions) {
     if (region.region == "all" || region.region.find('/') != std::string::npos) continue;
@@ -120,19 +112,15 @@ std::string shape_table(const Plan& plan, const Results& results, const Slice& s
 }
 
 // rmse(light) / rmse(bsdf) for each shape and the light it mirrors: below 1 the light technique wins.
-std::string duel_table(const Plan& plan, const Results& results, const Slice& slice, const std::string& sampler) {
+std::string duel_table(const Slice& slice, const std::string& sampler) {
   const CellResult *light = nullptr, *bsdf = nullptr;
-  for (const std::size_t c : slice.cells) {
-    const std::string& name = plan.scenes[slice.scene].estimators[plan.cells[c].estimator].name;
-    if (plan.cells[c].sampler != sampler) continue;
-    if (name == "light") light = &results.cells[c];
-    if (name == "bsdf") bsdf = &results.cells[c];
+  for (const CellResult* cell : slice.cells) {
+    if (cell->name.sampler != sampler) continue;
+    if (cell->name.estimator == "light") light = cell;
+    if (cell->name.estimator == "bsdf") bsdf = cell;
   }
   if (!light || !bsdf) return "";
   std::vector<std::string> shapes, lights;
-  const auto note = [](std::vector<std::string>& names, const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
   for (const RegionResult& region : light->regions) {
     const auto slash = region.region.find('/');
     if (slash == std::string::npos || !region.rmse) continue;
@@ -157,19 +145,18 @@ std::string duel_table(const Plan& plan, const Results& results, const Slice& sl
 
 }  // namespace
 
-std::string summary(const Plan& plan, const Results& results) {
+std::string summary(const Results& results) {
   std::string text;
-  for (const Slice& slice : largest_slices(plan)) {
-    const PlannedScene& scene = plan.scenes[slice.scene];
-    text +=
-        fmt::format("{}{}, {}, N = {}, {}, {}\n\n", text.empty() ? "" : "\n", scene.name, to_string(slice.precision),
-                    slice.samples, counted(scene.pixels.size(), "pixel"), replicates_of(plan, slice));
-    text += main_table(plan, results, slice);
-    const std::string& sampler = plan.cells[slice.cells.front()].sampler;
-    if (results.cells[slice.cells.front()].regions.empty()) continue;
+  for (const Slice& slice : largest_slices(results)) {
+    const CellResult& first = *slice.cells.front();
+    text += fmt::format("{}{}, {}, N = {}, {}, {}\n\n", text.empty() ? "" : "\n", first.name.scene,
+                        first.name.precision, slice.samples, counted(first.pixels, "pixel"), replicates_of(slice));
+    text += main_table(results, slice);
+    const std::string& sampler = first.name.sampler;
+    if (first.regions.empty()) continue;
     text += fmt::format("\nRMSE over the pixels that see each shape, with {} points:\n\n", sampler) +
-            shape_table(plan, results, slice, sampler);
-    if (const std::string duel = duel_table(plan, results, slice, sampler); !duel.empty()) {
+            shape_table(slice, sampler);
+    if (const std::string duel = duel_table(slice, sampler); !duel.empty()) {
       text += fmt::format(
                   "\nrmse(light) / rmse(bsdf) where a shape mirrors a light, with {} points; below 1 the light "
                   "technique wins:\n\n",
@@ -177,7 +164,7 @@ std::string summary(const Plan& plan, const Results& results) {
               duel;
     }
   }
-  if (const std::string rates = rates_side_by_side(plan, results); !rates.empty())
+  if (const std::string rates = rates_side_by_side(results); !rates.empty())
     text += "\nrates, the slopes of log RMSE against log N, with 95 % intervals\n\n" + rates;
   return text;
 }

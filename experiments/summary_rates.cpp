@@ -24,23 +24,25 @@ void note(std::vector<std::string>& names, const std::string& name) {
 
 }  // namespace
 
-std::string rates_side_by_side(const Plan& plan, const Results& results) {
-  const auto other = std::ranges::find_if(
-      plan.cells, [&](const Cell& cell) { return cell.precision != plan.cells.front().precision; });
-  const int precisions = other == plan.cells.end() ? 1 : 2;
+std::string rates_side_by_side(const Results& results) {
+  std::vector<std::string> scenes, precisions;
+  std::map<std::string, std::vector<std::string>> estimators;  // of each scene
+  for (const CellResult& cell : results.cells) {
+    note(scenes, cell.name.scene);
+    note(precisions, cell.name.precision);
+    note(estimators[cell.name.scene], cell.name.estimator);
+  }
   std::vector<std::string> rows, columns;
   std::map<std::pair<std::string, std::string>, std::string> texts;
   for (const RateResult& rate : results.rates) {
-    const Cell& cell = plan.cells[rate.first_cell];
-    const PlannedScene& scene = plan.scenes[cell.scene];
-    const bool one_estimator = scene.estimators.size() == 1;
-    const std::string row = one_estimator ? cell.sampler : cell.sampler + " " + scene.estimators[cell.estimator].name;
-    const std::string column = precisions == 1 ? scene.name : scene.name + ", " + to_string(cell.precision);
+    const CellName& name = results.cells[rate.first_cell].name;
+    const std::string row = estimators[name.scene].size() == 1 ? name.sampler : name.sampler + " " + name.estimator;
+    const std::string column = precisions.size() == 1 ? name.scene : name.scene + ", " + name.precision;
     note(rows, row);
     note(columns, column);
     texts.emplace(std::pair(row, column), cell_text(rate));  // the first is that over every N
   }
-  if (plan.scenes.size() < kFewestScenes || rows.size() < 2) return "";
+  if (scenes.size() < kFewestScenes || rows.size() < 2) return "";
   std::vector<std::vector<std::string>> table = {{"sampler"}};
   table[0].insert(table[0].end(), columns.begin(), columns.end());
   for (const std::string& row : rows) {

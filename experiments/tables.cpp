@@ -8,25 +8,24 @@ namespace halfslope {
 namespace {
 
 // The first columns of every table.
-void key_cells(CsvWriter& csv, const Plan& plan, const Cell& cell) {
-  const PlannedScene& scene = plan.scenes[cell.scene];
-  csv.cell(scene.name).cell(scene.estimators[cell.estimator].name).cell(cell.sampler).cell(to_string(cell.precision));
+void key_cells(CsvWriter& csv, const CellName& name) {
+  csv.cell(name.scene).cell(name.estimator).cell(name.sampler).cell(name.precision);
 }
 
+// A number that is not finite is an empty cell.
 std::optional<double> if_finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
 
 }  // namespace
 
-std::string convergence_csv(const Plan& plan, const Results& results) {
+std::string convergence_csv(const Results& results) {
   CsvWriter csv({"scene",     "estimator", "sampler",      "precision",     "samples", "replicates", "pixels",
                  "mean",      "reference", "reference_se", "reference_mse", "bias",    "bias_se",    "variance",
                  "rmse",      "rmse_lo",   "rmse_hi",      "mae",           "relmse",  "kurtosis",   "median_abs_error",
                  "nonfinite", "status"});
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    const Cell& cell = plan.cells[c];
-    const CellStatistics& s = results.cells[c].statistics;
-    key_cells(csv, plan, cell);
-    csv.cell(cell.samples).cell(plan.passes[cell.pass].replicates).cell(plan.scenes[cell.scene].pixels.size());
+  for (const CellResult& cell : results.cells) {
+    const CellStatistics& s = cell.statistics;
+    key_cells(csv, cell.name);
+    csv.cell(cell.name.samples).cell(cell.replicates).cell(cell.pixels);
     csv.cell(s.mean).cell(if_finite(s.reference)).cell(if_finite(s.reference_se)).cell(if_finite(s.reference_mse));
     csv.cell(s.bias).cell(s.bias_se);
     csv.cell(s.variance).cell(s.rmse).cell(s.rmse_lo).cell(s.rmse_hi).cell(s.mae).cell(s.relmse).cell(s.kurtosis);
@@ -39,26 +38,19 @@ ReplicatesTable::ReplicatesTable()
     : csv_({"scene", "estimator", "sampler", "precision", "samples", "replicate", "mean", "mse", "mae",
             "max_abs_error"}) {}
 
-namespace {
-
-// A number that is not finite is an empty cell, as in the other tables.
-std::optional<double> finite(double x) { return std::isfinite(x) ? std::optional(x) : std::nullopt; }
-
-}  // namespace
-
-void ReplicatesTable::add(const Plan& plan, const Cell& cell, const std::vector<ReplicateErrors>& replicates) {
+void ReplicatesTable::add(const CellName& cell, const std::vector<ReplicateErrors>& replicates) {
   for (std::size_t r = 0; r < replicates.size(); ++r) {
-    key_cells(csv_, plan, cell);
-    csv_.cell(cell.samples).cell(r).cell(finite(replicates[r].mean)).cell(finite(replicates[r].mse));
-    csv_.cell(finite(replicates[r].mae)).cell(finite(replicates[r].max_abs_error)).end_row();
+    key_cells(csv_, cell);
+    csv_.cell(cell.samples).cell(r).cell(if_finite(replicates[r].mean)).cell(if_finite(replicates[r].mse));
+    csv_.cell(if_finite(replicates[r].mae)).cell(if_finite(replicates[r].max_abs_error)).end_row();
   }
 }
 
-std::string rates_csv(const Plan& plan, const Results& results) {
+std::string rates_csv(const Results& results) {
   CsvWriter csv({"scene", "estimator", "sampler", "precision", "rate", "rate_lo", "rate_hi", "samples_lo", "samples_hi",
                  "theory", "status"});
   for (const RateResult& rate : results.rates) {
-    key_cells(csv, plan, plan.cells[rate.first_cell]);
+    key_cells(csv, results.cells[rate.first_cell].name);
     csv.cell(rate.fit.rate);
     csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->lo) : std::nullopt);
     csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->hi) : std::nullopt);
@@ -70,15 +62,15 @@ std::string rates_csv(const Plan& plan, const Results& results) {
   return csv.text();
 }
 
-std::string regions_csv(const Plan& plan, const Results& results) {
+std::string regions_csv(const Results& results) {
   CsvWriter csv({"scene", "estimator", "sampler", "precision", "samples", "region", "pixels", "rmse", "rmse_lo",
                  "rmse_hi", "relmse", "relmse_lo", "relmse_hi"});
   bool any = false;
-  for (std::size_t c = 0; c < plan.cells.size(); ++c) {
-    for (const RegionResult& region : results.cells[c].regions) {
+  for (const CellResult& cell : results.cells) {
+    for (const RegionResult& region : cell.regions) {
       any = true;
-      key_cells(csv, plan, plan.cells[c]);
-      csv.cell(plan.cells[c].samples).cell(region.region).cell(region.pixels);
+      key_cells(csv, cell.name);
+      csv.cell(cell.name.samples).cell(region.region).cell(region.pixels);
       csv.cell(region.rmse).cell(region.rmse_lo).cell(region.rmse_hi);
       csv.cell(region.relmse).cell(region.relmse_lo).cell(region.relmse_hi).end_row();
     }

@@ -5,33 +5,32 @@
 #include <vector>
 
 #include "core/csv.h"
-#include "experiments/plan.h"
 #include "experiments/results.h"
 
 namespace halfslope {
 
-std::string convergence_csv(const Plan& plan, const Results& results);
+std::string convergence_csv(const Results& results);
 /// replicates.csv, cell by cell.
 class ReplicatesTable {
  public:
   ReplicatesTable();
-  void add(const Plan& plan, const Cell& cell, const std::vector<ReplicateErrors>& replicates);
+  void add(const CellName& cell, const std::vector<ReplicateErrors>& replicates);
   /// The text since the last call, the header first.
   std::string take_text() { return csv_.take_text(); }
 
  private:
   CsvWriter csv_;
 };
-std::string rates_csv(const Plan& plan, const Results& results);
+std::string rates_csv(const Results& results);
 /// Empty where no scene has parts.
-std::string regions_csv(const Plan& plan, const Results& results);
+std::string regions_csv(const Results& results);
 
 /// The rates of at least three scenes as a table: a row a sampler (and estimator, where there are several), a column a
 /// scene. Empty where there are fewer, or one row.
-std::string rates_side_by_side(const Plan& plan, const Results& results);
+std::string rates_side_by_side(const Results& results);
 
 /// What a person wants to see first: the largest N side by side, rates, and where an image has parts, which estimator
 /// wins where.
-std::string summary(const Plan& plan, const Results& results);
+std::string summary(const Results& results);
 
 }  // namespace halfslope

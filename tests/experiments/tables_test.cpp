@@ -52,8 +52,8 @@ TEST(Tables, QuoteNamesWithCommasAndEndLinesWithLf) {
                 AllOf(HasSubstr("\n\"aligned-phong-cap:n=2,alpha=0.5\",light,independent,f32,"), Not(HasSubstr("\r"))));
     EXPECT_EQ(text.back(), '\n');
   }
-  EXPECT_EQ(read_file(scope.path("out/convergence.csv")), convergence_csv(outcome.plan, outcome.results));
-  EXPECT_EQ(read_file(scope.path("out/rates.csv")), rates_csv(outcome.plan, outcome.results));
+  EXPECT_EQ(read_file(scope.path("out/convergence.csv")), convergence_csv(outcome.results));
+  EXPECT_EQ(read_file(scope.path("out/rates.csv")), rates_csv(outcome.results));
   EXPECT_FALSE(std::filesystem::exists(scope.path("out/regions.csv")));  // one pixel has no parts
   EXPECT_EQ(scope.table("convergence.csv").text(3, "estimator"), "light");
   EXPECT_EQ(scope.table("convergence.csv").text(4, "estimator"), "power:3@light*3+bsdf");
@@ -78,7 +78,7 @@ TEST(Tables, NumbersReadBackAsTheyWere) {
 TEST(Tables, TheSummaryShowsTheLargestNOfEverySampler) {
   const RunScope scope;
   const RunOutcome outcome = scope.run(kToy);
-  const std::string text = summary(outcome.plan, outcome.results);
+  const std::string text = summary(outcome.results);
   EXPECT_THAT(text, HasSubstr("N = 16"));
   EXPECT_THAT(text, Not(HasSubstr("N = 4,")));
   for (const char* name : {"independent", "halton-owen", "light", "power:3@light*3+bsdf"})

@@ -1,0 +1,99 @@
+#include "experiments/region_results.h"
+
+#include <cmath>
+
+#include "analysis/intervals.h"
+#include "core/random.h"
+
+namespace halfslope {
+namespace {
+
+// Means of squared errors over a part of the image, with the interval of log M.
+struct Squared {
+  std::optional<double> value, lo, hi;
+};
+
+Squared squared(const std::vector<double>& replicates, std::uint64_t seed, double reference_share) {
+  Moments moments;
+  moments.add(std::span<const double>(replicates));
+  Squared result;
+  if (!std::isfinite(moments.mean) || moments.mean - reference_share <= 0) return result;
+  result.value = moments.mean - reference_share;
+  if (const auto interval = log_mean_bootstrap_t(replicates, seed)) {
+    const double lo = std::exp(interval->lo) - reference_share, hi = std::exp(interval->hi) - reference_share;
+    if (lo > 0) result.lo = lo;
+    if (hi > 0) result.hi = hi;
+  }
+  return result;
+}
+
+std::optional<double> root(const std::optional<double>& x) { return x ? std::optional(std::sqrt(*x)) : std::nullopt; }
+
+// Leaves joined into a part of the image: pixel-weighted means for each replicate.
+RegionResult join(const std::string& name, const FoldedCell& folded, const std::vector<std::uint32_t>& leaves,
+                  const ReferenceShares& shares) {
+  RegionResult result;
+  result.region = name;
+  std::vector<double> mse, relmse;
+  double share = 0, relative_share = 0;
+  for (const std::uint32_t leaf : leaves) {
+    const RegionErrors& errors = folded.regions.at(leaf);
+    result.pixels += errors.pixels;
+    mse.resize(errors.mse.size());
+    relmse.resize(errors.mse.size());
+    for (std::size_t r = 0; r < errors.mse.size(); ++r) {
+      mse[r] += errors.mse[r] * static_cast<double>(errors.pixels);
+      relmse[r] += errors.relmse[r] * static_cast<double>(errors.pixels);
+    }
+    share += shares.at(leaf).plain;
+    relative_share += shares.at(leaf).relative;
+  }
+  const auto pixels = static_cast<double>(result.pixels);
+  for (double& x : mse) x /= pixels;
+  for (double& x : relmse) x /= pixels;
+  const Squared plain = squared(mse, hash_text(name, folded.data.bootstrap_seed), share / pixels);
+  const Squared relative = squared(relmse, hash_text(name, folded.data.bootstrap_seed + 1), relative_share / pixels);
+  result.rmse = root(plain.value), result.rmse_lo = root(plain.lo), result.rmse_hi = root(plain.hi);
+  result.relmse = relative.value, result.relmse_lo = relative.lo, result.relmse_hi = relative.hi;
+  return result;
+}
+
+}  // namespace
+
+ReferenceShares reference_shares(const PlannedScene& scene, const Reference& reference) {
+  ReferenceShares shares;
+  const auto channels = static_cast<std::size_t>(scene.source->channels());
+  for (std::size_t p = 0; p < scene.pixels.size(); ++p) {
+    ReferenceShare& share = shares[static_cast<std::uint32_t>(scene.source->region(scene.pixels[p]))];
+    ++share.pixels;
+    for (std::size_t c = 0; c < channels; ++c) {
+      const double value = reference.value[p * channels + c], variance = reference.variance[p * channels + c];
+      share.plain += variance / static_cast<double>(channels);
+      share.relative += variance / (value * value + 0.01) / static_cast<double>(channels);
+    }
+  }
+  return shares;
+}
+
+std::vector<RegionResult> region_results(const PlannedScene& scene, const FoldedCell& folded,
+                                         const CellStatistics& whole, const ReferenceShares& shares) {
+  std::vector<RegionResult> results;
+  if (folded.regions.empty() || folded.regions.begin()->second.mse.empty()) return results;
+  const auto names = scene.source->regions();
+  std::vector<std::pair<std::string, std::vector<std::uint32_t>>> shapes;  // in the scene's order
+  for (const auto& [leaf, errors] : folded.regions) {
+    const std::string shape = names[leaf].substr(0, names[leaf].find('/'));
+    if (shapes.empty() || shapes.back().first != shape) shapes.emplace_back(shape, std::vector<std::uint32_t>());
+    shapes.back().second.push_back(leaf);
+  }
+  results.push_back({"all", static_cast<std::int64_t>(scene.pixels.size()), whole.rmse, whole.rmse_lo, whole.rmse_hi,
+                     whole.relmse, whole.relmse_lo, whole.relmse_hi});
+  for (const auto& [shape, leaves] : shapes) {
+    results.push_back(join(shape, folded, leaves, shares));
+    if (leaves.size() == 1 && names[leaves[0]] == shape) continue;
+    for (const std::uint32_t leaf : leaves) results.push_back(join(names[leaf], folded, {leaf}, shares));
+  }
+  return results;
+}
+
+}  // namespace halfslope
