@@ -10,6 +10,7 @@
 
 #include "core/layout.h"
 #include "core/point_block.h"
+#include "core/regularity.h"
 #include "core/term_block.h"
 
 namespace halfslope {
@@ -67,6 +68,8 @@ class IntegralSource {
   /// The variance of f at a uniform point, of a scene of one integral, where it is known; infinity where f² has no
   /// integral: then an estimate's mean squared error does not exist, and nothing that estimates it is reported.
   virtual std::optional<double> variance() const { return std::nullopt; }
+  /// How smooth f is at a uniform point, of a scene whose only technique draws one.
+  virtual Regularity regularity() const { return Regularity::kSquareIntegrable; }
   /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
   virtual std::vector<std::string> regions() const { return {}; }
   virtual int region(int /*pixel*/) const { return 0; }

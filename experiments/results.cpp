@@ -19,11 +19,12 @@ CellFacts facts_of(const Plan& plan, const Cell& cell, const Reference& referenc
   // Values are as large as their root mean square, however small their mean.
   const double unit = cell.precision == Precision::kF32 ? 0x1p-24 : 0x1p-53, known = source.variance().value_or(0);
   facts.rounding_mse = unit * unit * (reference.mean * reference.mean + (std::isfinite(known) ? known : 0));
-  for (const SamplerInfo& info : samplers.list()) {
-    if (info.name != cell.sampler) continue;
-    facts.unbiased = info.unbiased;
-    facts.theory = info.rate;
-  }
+  const SamplerInfo info = samplers.make(cell.sampler)->info();
+  facts.unbiased = info.unbiased;
+  // What another technique integrates, f over its density, is as smooth as nobody said.
+  const bool plain = source.techniques().size() == 1;
+  const Regularity regularity = plain ? source.regularity() : Regularity::kSquareIntegrable;
+  if (info.rate) facts.theory = info.rate(regularity, plan.passes[cell.pass].allocation.layout(source.techniques()));
   return facts;
 }
 

@@ -1,5 +1,6 @@
 #include "samplers/antithetic.h"
 
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -14,7 +15,7 @@ class Antithetic final : public Sampler {
         .reference = "Hammersley & Morton, A new Monte Carlo technique: antithetic variates (1956)",
         .sequence = true,
         .max_dims = kMaxWordDims,
-        .rate = -0.5,
+        .rate = monte_carlo_rate,
     };
     return kInfo;
   }

@@ -2,6 +2,7 @@
 
 #include "samplers/multi_jittered_grid.h"
 #include "samplers/padded.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -35,7 +36,8 @@ std::unique_ptr<Sampler> make_correlated_multi_jittered() {
   return padded({.name = "correlated-multi-jittered",
                  .description = "multi-jittered pairs whose columns share one shuffle, and rows one; any N = a*b",
                  .reference = "Kensler, Correlated multi-jittered sampling (2013)",
-                 .max_dims = kPaddedDims},
+                 .max_dims = kPaddedDims,
+                 .rate = stratified_pairs_rate},
                 [] { return std::make_unique<CorrelatedMultiJittered>(); });
 }
 

@@ -6,6 +6,7 @@
 #include "samplers/exact_counter.h"
 #include "samplers/faure_sequence.h"
 #include "samplers/scrambled_inverse.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -76,6 +77,7 @@ class Faure final : public Sampler {
         .randomised = false,
         .unbiased = false,
         .max_dims = kMostDims,
+        .rate = low_discrepancy_rate,
     };
     return kInfo;
   }
@@ -107,6 +109,7 @@ class FaureOwen final : public Sampler {
         .reference = "Owen, Randomly permuted (t,m,s)-nets and (t,s)-sequences (1995)",
         .sequence = true,
         .max_dims = kMostDims,
+        .rate = scrambled_plane_rate,
     };
     return kInfo;
   }

@@ -4,6 +4,7 @@
 
 #include "samplers/radical_inverse.h"
 #include "samplers/scrambled_inverse.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -17,6 +18,7 @@ class HaltonOwen final : public Sampler {
         .reference = "Owen (1995); Owen, A randomized Halton algorithm in R (2017)",
         .sequence = true,
         .max_dims = static_cast<int>(primes().size()),
+        .rate = scrambled_sequence_rate,
     };
     return kInfo;
   }

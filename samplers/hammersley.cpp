@@ -5,6 +5,7 @@
 #include "samplers/exact_counter.h"
 #include "samplers/radical_inverse.h"
 #include "samplers/rotation.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -19,6 +20,7 @@ class Hammersley final : public Sampler {
         .randomised = false,
         .unbiased = false,
         .max_dims = static_cast<int>(primes().size()) + 1,
+        .rate = low_discrepancy_rate,
     };
     return kInfo;
   }

@@ -18,6 +18,7 @@
 
 #include "samplers/radical_inverse.h"
 #include "samplers/scrambled_inverse.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -83,6 +84,7 @@ class HammersleyOwen final : public Sampler {
         .description = "Hammersley set, nested scrambling that depends on digits and depth; N a power of two",
         .reference = "Hammersley (1960); Owen, Randomly permuted (t,m,s)-nets and (t,s)-sequences (1995)",
         .max_dims = static_cast<int>(primes().size()) + 1,
+        .rate = scrambled_plane_rate,
     };
     return kInfo;
   }

@@ -74,7 +74,12 @@ std::unique_ptr<Sampler> make_padded(const std::string& name, const SamplerCatal
   info.reference += "; " + padded_family_info().reference;
   info.max_dims = kPaddedDims;
   info.max_count = std::min(info.max_count, kHeldPoints);
-  info.rate = std::nullopt;
+  // One pair is the sampler's own; of several, each is good by itself and their combinations are random.
+  info.rate = [own = info.rate](Regularity regularity, const Layout& layout) -> std::optional<double> {
+    if (layout.groups.size() == 1) return own ? own(regularity, layout) : std::nullopt;
+    const bool sum = regularity >= Regularity::kOneCoordinateJump;
+    return regularity == Regularity::kSquareIntegrable || sum ? std::nullopt : std::optional(-0.5);
+  };
   const bool fixed = !info.randomised || info.replicates.has_value();
   info.replicates = std::nullopt;
   if (fixed) {

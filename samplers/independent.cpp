@@ -2,6 +2,7 @@
 
 #include "core/kernel_library.h"
 #include "samplers/kernels.h"
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -16,7 +17,7 @@ class Independent final : public Sampler {
         .reference = "Salmon, Moraes, Dror & Shaw, Parallel random numbers: as easy as 1, 2, 3 (2011): Philox 4x32-10",
         .sequence = true,
         .max_dims = kMaxWordDims,
-        .rate = -0.5,
+        .rate = monte_carlo_rate,
     };
     return kInfo;
   }

@@ -5,6 +5,7 @@
 
 #include "core/assertion.h"
 #include "samplers/strata.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -31,6 +32,7 @@ class Jittered final : public Sampler {
         .description = "one point in each cell of the full grid over all d dimensions; N = n^d",
         .reference = "Cook, Porter & Carpenter, Distributed ray tracing (1984)",
         .max_dims = 31,
+        .rate = grid_rate,
     };
     return kInfo;
   }

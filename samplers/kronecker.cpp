@@ -2,6 +2,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -32,6 +33,7 @@ class Kronecker final : public Sampler {
         .reference = "Roberts, The unreasonable effectiveness of quasirandom sequences (2018)",
         .sequence = true,
         .max_dims = 1024,
+        .rate = kronecker_rate,
     };
     return kInfo;
   }

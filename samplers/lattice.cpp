@@ -4,6 +4,7 @@
 // with 2^m points and generating vector z.
 #include "samplers/lattice.h"
 
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -30,6 +31,7 @@ class Lattice final : public Sampler {
     info_.sequence = true;
     info_.max_dims = static_cast<int>(lattice_vector().size());
     info_.max_count = kMostPoints;
+    info_.rate = tent ? folded_lattice_rate : low_discrepancy_rate;
   }
   const SamplerInfo& info() const override { return info_; }
 

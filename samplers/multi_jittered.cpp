@@ -7,6 +7,7 @@
 #include "samplers/keyed_hash.h"
 #include "samplers/multi_jittered_grid.h"
 #include "samplers/padded.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -76,7 +77,8 @@ std::unique_ptr<Sampler> make_multi_jittered() {
   return padded({.name = "multi-jittered",
                  .description = "pairs with one point in each cell of a grid, N strata of x and N of y; any N = a*b",
                  .reference = "Chiu, Shirley & Wang, Multi-jittered sampling (1994)",
-                 .max_dims = kPaddedDims},
+                 .max_dims = kPaddedDims,
+                 .rate = stratified_pairs_rate},
                 [] { return std::make_unique<MultiJittered>(); });
 }
 

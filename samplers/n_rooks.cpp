@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "samplers/strata.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -15,6 +16,7 @@ class NRooks final : public Sampler {
         .description = "Latin hypercube: N strata in every dimension, shuffled independently; any N",
         .reference = "McKay, Beckman & Conover (1979); Shirley, Discrepancy as a quality measure (1991)",
         .max_dims = 1024,
+        .rate = latin_rate,
     };
     return kInfo;
   }

@@ -16,6 +16,7 @@
 
 #include "samplers/keyed_hash.h"
 #include "samplers/padded.h"
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -129,7 +130,8 @@ std::unique_ptr<Sampler> make_pmj() {
        .reference = "Christensen, Kensler & Kilpatrick, Progressive multi-jittered sample sequences (2018)",
        .sequence = true,
        .max_dims = kPaddedDims,
-       .max_count = kHeldPoints},
+       .max_count = kHeldPoints,
+       .rate = stratified_pairs_rate},
       [] { return std::make_unique<Pmj>(); }, kHeldPoints);
 }
 

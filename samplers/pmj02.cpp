@@ -17,6 +17,7 @@
 
 #include "samplers/keyed_hash.h"
 #include "samplers/padded.h"
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -101,7 +102,8 @@ std::unique_ptr<Sampler> make_pmj02() {
                  .description = "progressive multi-jittered pairs, every aligned run of 2^m a (0,m,2)-net",
                  .reference = "Christensen, Kensler & Kilpatrick (2018); Helmer, Christensen & Kensler (2021)",
                  .sequence = true,
-                 .max_dims = kPaddedDims},
+                 .max_dims = kPaddedDims,
+                 .rate = stratified_pairs_rate},
                 [] { return std::make_unique<Pmj02>(); });
 }
 

@@ -4,6 +4,7 @@
 
 #include "samplers/exact_counter.h"
 #include "samplers/jittered.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -42,6 +43,7 @@ class Regular final : public Sampler {
         .randomised = false,
         .unbiased = false,
         .max_dims = 31,
+        .rate = midpoint_rate,
     };
     return kInfo;
   }

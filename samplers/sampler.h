@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,8 +11,12 @@
 #include "core/layout.h"
 #include "core/point_block.h"
 #include "core/random.h"
+#include "core/regularity.h"
 
 namespace halfslope {
+
+/// The slope of log RMSE against log N that a theorem promises; empty where none does.
+using RateTheory = std::function<std::optional<double>(Regularity regularity, const Layout& layout)>;
 
 /// What a sampler declares of itself.
 struct SamplerInfo {
@@ -24,8 +29,8 @@ struct SamplerInfo {
   bool unbiased = true;
   int max_dims = 0;
   std::uint64_t max_count = std::uint64_t{1} << 31;
-  /// The rate that theory gives for any square-integrable integrand, where there is one.
-  std::optional<double> rate = std::nullopt;
+  /// The rate that theory gives for an integrand of that class, as an exponent of N; see samplers/theory.h. Null: none.
+  RateTheory rate = nullptr;
   /// The replicates there are, where they cannot be made at will: such a sampler always runs all of them.
   std::optional<std::int64_t> replicates = std::nullopt;
   /// What the points depend on beside the name, such as a file's contents; part of what a run is.

@@ -5,6 +5,7 @@
 
 #include "samplers/rotation.h"
 #include "samplers/sobol_sequence.h"
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -31,6 +32,7 @@ class Sobol final : public Sampler {
         .randomised = false,
         .unbiased = false,
         .max_dims = sobol_dims(),
+        .rate = low_discrepancy_rate,
     };
     return kInfo;
   }
@@ -60,6 +62,7 @@ class SobolXor final : public Sampler {
         .reference = "L'Ecuyer & Lemieux, Recent advances in randomized quasi-Monte Carlo methods (2002)",
         .sequence = true,
         .max_dims = sobol_dims(),
+        .rate = low_discrepancy_rate,
     };
     return kInfo;
   }

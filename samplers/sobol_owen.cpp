@@ -4,6 +4,7 @@
 #include <bit>
 
 #include "samplers/sobol_sequence.h"
+#include "samplers/theory.h"
 #include "samplers/word_source.h"
 
 namespace halfslope {
@@ -56,6 +57,7 @@ class SobolOwen final : public ScrambledSobol {
         .reference = "Owen, Randomly permuted (t,m,s)-nets and (t,s)-sequences (1995)",
         .sequence = true,
         .max_dims = sobol_dims(),
+        .rate = scrambled_net_rate,
     };
     return kInfo;
   }
@@ -97,6 +99,7 @@ class SobolOwenFast final : public ScrambledSobol {
             "better LK hash (2021)",
         .sequence = true,
         .max_dims = sobol_dims(),
+        .rate = scrambled_net_rate,
     };
     return kInfo;
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "samplers/strata.h"
+#include "samplers/theory.h"
 
 namespace halfslope {
 namespace {
@@ -16,6 +17,7 @@ class Stratified final : public Sampler {
         .description = "one point in each cell of a grid for every 1-D and 2-D group, groups shuffled; any N = a*b",
         .reference = "Cook, Porter & Carpenter, Distributed ray tracing (1984)",
         .max_dims = 1024,
+        .rate = grouped_grid_rate,
     };
     return kInfo;
   }

@@ -23,6 +23,7 @@ class AnalyticSource final : public IntegralSource {
     return Color{integrand_.integral, integrand_.integral, integrand_.integral};
   }
   std::optional<double> variance() const override { return integrand_.variance; }
+  Regularity regularity() const override { return integrand_.regularity; }
   std::string fingerprint() const override { return fingerprint_; }
 
  private:

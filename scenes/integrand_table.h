@@ -19,6 +19,7 @@ struct Integrand {
   double integral = 0;                  ///< ∫ f over [0,1]^d
   std::optional<double> variance;       ///< of f at a uniform point; infinity where E f² is
   std::vector<Technique> techniques{};  ///< empty: `mean`, with pairs of dimensions
+  Regularity regularity = Regularity::kSquareIntegrable;
 };
 
 /// What the catalogue says of an analytic scene. Moments are there where the name has no parameters and determines
@@ -45,6 +46,12 @@ IntegrandRows genz_integrands();
 IntegrandRows product_integrands();
 IntegrandRows singular_integrands();
 IntegrandRows mis_integrands();
+
+/// The integrand, of that class.
+inline Integrand of_class(Regularity regularity, Integrand integrand) {
+  integrand.regularity = regularity;
+  return integrand;
+}
 
 /// A row without parameters.
 inline IntegrandRow row(const char* name, const char* description, const char* reference, const Integrand& integrand) {

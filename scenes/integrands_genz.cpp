@@ -32,8 +32,10 @@ std::vector<double> with_centres(std::vector<double> a) {
 }
 
 Integrand of_moments(const std::vector<double>& a, std::vector<double> parameters, Real integral, Real mean_square) {
-  return {"", static_cast<int>(a.size()), std::move(parameters), static_cast<double>(integral),
-          static_cast<double>(mean_square - integral * integral)};
+  Integrand integrand = {"", static_cast<int>(a.size()), std::move(parameters), static_cast<double>(integral),
+                         static_cast<double>(mean_square - integral * integral)};
+  integrand.regularity = Regularity::kSmooth;
+  return integrand;
 }
 
 // Where f = ∏ f_i: the products of the factors' moments; `factor(k, i, a, u)` is ∫ f_i^k.
@@ -112,17 +114,17 @@ Integrand gaussian(int dims) {
 
 Integrand continuous(int dims) {
   const std::vector<double> a = widths(8, dims);
-  return product(a, with_centres(a), [](int k, std::size_t, Real width, Real u) {
-    return -(std::expm1(-k * width * u) + std::expm1(-k * width * (1 - u))) / (k * width);
-  });
+  return of_class(Regularity::kMixedDerivative, product(a, with_centres(a), [](int k, std::size_t, Real width, Real u) {
+                    return -(std::expm1(-k * width * u) + std::expm1(-k * width * (1 - u))) / (k * width);
+                  }));
 }
 
 // Cut off in the first two dimensions only.
 Integrand discontinuous(int dims) {
   const std::vector<double> a = widths(4.3, dims);
-  return product(a, with_centres(a), [](int k, std::size_t i, Real width, Real u) {
-    return std::expm1(k * width * (i < 2 ? u : 1)) / (k * width);
-  });
+  return of_class(Regularity::kAxisJump, product(a, with_centres(a), [](int k, std::size_t i, Real width, Real u) {
+                    return std::expm1(k * width * (i < 2 ? u : 1)) / (k * width);
+                  }));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 namespace halfslope {
 namespace {
 
+using enum Regularity;
+
 // (1 + v)^d − 1: the variance of a product of d factors of mean 1 and variance v.
 double product_variance(double v, int dims) { return std::expm1(dims * std::log1p(v)); }
 
@@ -24,14 +26,14 @@ Integrand sobol_g(int dims) {
   }
   for (const double x : a) integrand.parameters.push_back(1 / (1 + x));
   integrand.variance = std::expm1(logarithm);
-  return integrand;
+  return of_class(kMixedDerivative, integrand);
 }
 
 // S = Σ x_i has the mean d/2 and the cumulants κ₂ = d/12, κ₃ = 0, κ₄ = −d/120: E S² = d²/4 + κ₂, and Var S² =
 // 4 (d/2)² κ₂ + 2κ₂² + κ₄.
 Integrand sum_squared(int dims) {
   const double d = dims;
-  return {"", dims, {}, d / 12 + d * d / 4, d * d * d / 12 + d * d / 72 - d / 120};
+  return of_class(kSmooth, {"", dims, {}, d / 12 + d * d / 4, d * d * d / 12 + d * d / 72 - d / 120});
 }
 
 // ∫ x^(1/d) = d/(d + 1) and ∫ x^(2/d) = d/(d + 2), so a factor's variance is 1/(d (d + 2)).
@@ -42,7 +44,8 @@ Integrand morokoff(int dims) {
 
 Integrand subcube(int dims) {
   const double scale = 1 / (dims - 0.5);
-  return {"", dims, {static_cast<double>(dims), scale}, 1, product_variance(scale * scale / 12, dims)};
+  return of_class(kSmooth,
+                  {"", dims, {static_cast<double>(dims), scale}, 1, product_variance(scale * scale / 12, dims)});
 }
 
 // With P_i = x₁ … x_i, E P_i P_j = 3^−i 2^−(j − i) for i ≤ j.
@@ -55,7 +58,7 @@ Integrand bratley(int dims) {
     }
   }
   const double mean = -(1 - std::ldexp(dims % 2 == 0 ? 1.0 : -1.0, -dims)) / 3;
-  return {"", dims, {}, mean, mean_square - mean * mean};
+  return of_class(kSmooth, {"", dims, {}, mean, mean_square - mean * mean});
 }
 
 }  // namespace
@@ -73,7 +76,7 @@ IntegrandRows product_integrands() {
       family("oddprod", "product of sqrt(12) (x_i - 1/2), an interaction of all dimensions at once; integral 0",
              "Owen, Monte Carlo theory, methods and examples: the analysis of variance",
              [](int d) {
-               return Integrand{"", d, {}, 0, 1};
+               return of_class(kSmooth, {"", d, {}, 0, 1});
              }),
       family("morokoff", "(1 + 1/d)^d product of x_i^(1/d): infinite slopes at the axes; integral 1", papers::kMorokoff,
              morokoff),
@@ -83,7 +86,7 @@ IntegrandRows product_integrands() {
       family("bernoulli2", "product of 1 + B_2(x_i), B_2 = x^2 - x + 1/6: periodic, a kink; integral 1",
              "Sloan & Joe, Lattice methods for multiple integration (1994)",
              [](int d) {
-               return Integrand{"", d, {}, 1, product_variance(1.0 / 180, d)};
+               return of_class(kSmooth, {"", d, {}, 1, product_variance(1.0 / 180, d)});
              }),
   };
 }

@@ -8,7 +8,9 @@ namespace {
 
 using std::numbers::pi;
 
-Integrand ramp(double integral, double mean_square) { return {"", 2, {}, integral, mean_square - integral * integral}; }
+Integrand ramp(double integral, double mean_square) {
+  return of_class(Regularity::kKinked, {"", 2, {}, integral, mean_square - integral * integral});
+}
 
 // 1 within r₁, then with t = (r₂ − r)/w, w = r₂ − r₁, a profile g(t) down to 0 at r₂: the mean is
 // turn (r₁²/2 + ∫ g(t) (r₂ − w t) w dt), turn the angle that lies in the square, and so for g².
@@ -32,7 +34,7 @@ IntegrandRows ramp_integrands() {
   const double triangle_variance = 50 * (1e-3 / 3 - 1e-4 / 4) + 0.25 * 0.81;
   return {
       row("rampx", "1 down to 0 from x = 0.2 to x = 0.4, on the unit square; integral 3/10", papers::kChristensen,
-          ramp(0.3, 0.2 + 0.2 / 3)),
+          of_class(Regularity::kOneCoordinateKinked, ramp(0.3, 0.2 + 0.2 / 3))),
       row("quarterdiskramp", "1 down to 0 from r = 0.7 to r = 0.9, r from the corner; integral 193 pi/1200",
           papers::kChristensen, linear_disk(pi / 2, 0.7, 0.9)),
       row("fulldiskramp", "1 down to 0 from r = 0.35 to r = 0.45, r from the middle; integral 193 pi/1200",
@@ -41,7 +43,7 @@ IntegrandRows ramp_integrands() {
           ramp(0.5, 0.25 + triangle_variance)),
       row("smoothdisk", "1 down to 0 from r = 0.3 to r = 0.5 by smoothstep, r from the middle; C1",
           "Jarosz et al., Orthogonal array sampling for Monte Carlo rendering (2019): the ladder of smoothness",
-          smooth_disk(0.3, 0.5)),
+          of_class(Regularity::kMixedDerivative, smooth_disk(0.3, 0.5))),
       row("kinkmax", "max(x + y - 1, 0), a kink on the diagonal; integral 1/6", "the shape of a basket option's payoff",
           ramp(1.0 / 6, 1.0 / 12)),
   };

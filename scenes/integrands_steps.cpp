@@ -11,7 +11,9 @@
 namespace halfslope {
 namespace {
 
-Integrand step(double p) { return {"", 2, {}, p, step_variance(p)}; }
+Integrand jump(Integrand integrand) { return of_class(Regularity::kJump, std::move(integrand)); }
+
+Integrand step(double p) { return jump({"", 2, {}, p, step_variance(p)}); }
 
 // The part of the unit cube where w·x > c. With x → 1 − x wherever w is negative, all weights are |w| and c grows by
 // those; then one minus the corner below the plane, by inclusion and exclusion over the vertices v:
@@ -47,7 +49,7 @@ Integrand halfspace(int dims) {
       {r2}, {1, -r2}, {1, -r2, r3}, {1, r2, -r3, -r5}, {1, r2, -r3, -r5, r7}, {1, r2, -r3, -r5, r7, -r11}};
   const std::vector<double>& own = weights[dims - 1];
   const double p = halfspace_volume(own, 0.1);
-  return {"", dims, own, p, step_variance(p)};
+  return jump({"", dims, own, p, step_variance(p)});
 }
 
 // π^(d/2) r^d / Γ(d/2 + 1), by V_d = V_(d−2) 2π r²/d from V_0 = 1 and V_1 = 2r.
@@ -59,7 +61,7 @@ Integrand ball(const std::string& subject, const Parameters& values) {
   }
   double p = dims % 2 == 1 ? 2 * r : 1;
   for (int d = dims % 2 == 1 ? 3 : 2; d <= dims; d += 2) p *= 2 * std::numbers::pi * r * r / d;
-  return {"", dims, {r * r}, p, step_variance(p)};
+  return jump({"", dims, {r * r}, p, step_variance(p)});
 }
 
 // Squares whose row and column add up to an odd number: ⌊n²/2⌋ of n².
@@ -67,15 +69,17 @@ Integrand checker(const std::string& subject, const Parameters& values) {
   const int n = values.whole(subject, "n", 2, 1024);
   Integrand integrand = step(static_cast<double>(n * n / 2) / (static_cast<double>(n) * n));
   integrand.parameters = {static_cast<double>(n)};
-  return integrand;
+  return of_class(Regularity::kAxisJump, integrand);
 }
 
 }  // namespace
 
 IntegrandRows step_integrands() {
+  using enum Regularity;
   using std::numbers::inv_pi, std::numbers::phi;
   return {
-      row("stepx", "1 where x < 1/pi, on the unit square; integral 1/pi", papers::kChristensen, step(inv_pi)),
+      row("stepx", "1 where x < 1/pi, on the unit square; integral 1/pi", papers::kChristensen,
+          of_class(kOneCoordinateJump, step(inv_pi))),
       row("quarterdisk", "1 where x^2 + y^2 < 2/pi, on the unit square; integral 1/2", papers::kChristensen, step(0.5)),
       row("fulldisk", "1 where (x - 1/2)^2 + (y - 1/2)^2 < 1/(2 pi), on the unit square; integral 1/2",
           papers::kChristensen, step(0.5)),
@@ -89,7 +93,7 @@ IntegrandRows step_integrands() {
       row_of_dims("simplex", 1, kMostIntegrandDims, "1 where x_1 + ... + x_d < d/2; integral 1/2",
                   "Hall, The distribution of means for samples of size N (1927)",
                   [](int d) {
-                    return Integrand{"", d, {}, 0.5, 0.25};
+                    return jump({"", d, {}, 0.5, 0.25});
                   }),
       {{"ball", "d=DIMENSIONS,r=0.4", "1 in a ball of radius r about the middle of the unit cube",
         "Jarosz et al., Orthogonal array sampling for Monte Carlo rendering (2019): steps with a curved edge"},
