@@ -3,6 +3,7 @@
 #include <Random123/philox.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace halfslope {
@@ -13,15 +14,58 @@ void draw_resample(std::uint64_t seed, std::uint32_t resample, std::uint32_t cou
   const auto index = [count](std::uint64_t word) {
     return static_cast<std::uint32_t>(((word & 0xffffffff) * count) >> 32);
   };
-  for (std::size_t i = 0; i < indices.size(); i += 4) {
+  const auto four_at = [&](std::size_t i) {
     const auto words = Philox()({{i / 4, resample}}, key);
-    const std::uint32_t four[] = {index(words[0]), index(words[0] >> 32), index(words[1]), index(words[1] >> 32)};
-    if (i + 4 <= indices.size()) {
-      std::copy_n(four, 4, indices.begin() + static_cast<std::ptrdiff_t>(i));
-    } else {
-      std::copy_n(four, indices.size() - i, indices.begin() + static_cast<std::ptrdiff_t>(i));
-    }
+    return std::array{index(words[0]), index(words[0] >> 32), index(words[1]), index(words[1] >> 32)};
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= indices.size(); i += 4) {
+    const auto four = four_at(i);
+    for (std::size_t k = 0; k < 4; ++k) indices[i + k] = four[k];
   }
+  if (i < indices.size())
+    std::ranges::copy_n(four_at(i).begin(), std::ssize(indices.subspan(i)),
+                        indices.begin() + static_cast<std::ptrdiff_t>(i));
+}
+
+namespace {
+
+/// Its sums are about the resample's first value, so that equal values give exact zeros.
+MeanBootstrap::Resample resample_of(std::span<const double> values, std::span<const std::uint32_t> indices) {
+  const double shift = values[indices[0]], n = static_cast<double>(indices.size());
+  std::array<double, 4> sums{}, squares{};  // four chains: one would wait for each addition to finish
+  const auto add = [&](std::size_t lane, std::size_t i) {
+    const double d = values[indices[i]] - shift;
+    sums[lane] += d;
+    squares[lane] += d * d;
+  };
+  std::size_t i = 0;
+  for (; i + 4 <= indices.size(); i += 4) {
+    for (std::size_t lane = 0; lane < 4; ++lane) add(lane, i + lane);
+  }
+  for (; i < indices.size(); ++i) add(0, i);
+  const double sum = (sums[0] + sums[1]) + (sums[2] + sums[3]),
+               square = (squares[0] + squares[1]) + (squares[2] + squares[3]);
+  return {shift + sum / n, square > 0 ? std::sqrt((square - sum * sum / n) / (n * (n - 1))) : 0.0};
+}
+
+}  // namespace
+
+std::optional<MeanBootstrap> bootstrap_mean(std::span<const double> values, std::uint64_t seed) {
+  const auto usable = [](double value) { return std::isfinite(value) && value >= 0; };
+  if (values.size() < 2 || !std::ranges::all_of(values, usable)) return std::nullopt;
+  MeanBootstrap result;
+  result.moments.add(values);
+  result.se = result.moments.standard_error() / result.moments.mean;
+  if (!(result.moments.mean > 0) || !std::isfinite(result.se) || result.se <= 0) return std::nullopt;
+  std::vector<double> relative(values.begin(), values.end());  // the errors of one cell may be 1e-12, of another 1e9
+  for (double& value : relative) value /= result.moments.mean;
+  std::vector<std::uint32_t> indices(values.size());
+  for (std::uint32_t resample = 0; resample < kBootstrapResamples; ++resample) {
+    draw_resample(seed, resample, static_cast<std::uint32_t>(values.size()), indices);
+    result.resamples.push_back(resample_of(relative, indices));
+  }
+  return result;
 }
 
 std::optional<Interval> bootstrap_t_interval(double estimate, double se, double widening, std::span<double> studentised,

@@ -22,16 +22,16 @@ struct ErrorImages {
 /// Simulates runs of so many replicates and makes the intervals of the RMSE by each of `methods`, a row each, and of
 /// the mean by Student's t, a row after them. A run counts as marked where its corrected kurtosis is above the limit
 /// (analysis/tails.h); coverage is over all runs, marked or not, and a run without an interval is not covered. `width`
-/// is of the RMSE and is the mean over the runs that have an interval. `share` of the study's progress. Empty where it
+/// is the mean over the runs that have an interval with two ends. `share` of the study's progress. Empty where it
 /// was stopped.
 std::vector<CoverageRow> measure_intervals(const ErrorImages& images, std::int64_t replicates,
                                            std::span<const IntervalMethod> methods, const CoverageRequest& request,
                                            double share = 1);
 
-/// Every method on Gaussian, uniform, Laplace, lognormal(1.5) and Pareto(2.5) errors, and on images of 256 pixels of
-/// means of 64 of the last two, at 16, 64 and 256 replicates; with 1024 by the methods that do not resample, for the
-/// mark. Promised are, of bootstrap-t and of Student's t on the mean, 93.5 to 96.5 % for Gaussian errors, and of
-/// bootstrap-t at most 99 % for uniform errors and the least shares that docs/errors.md names.
+/// Every method on Gaussian, uniform, Laplace, lognormal(1.5) and Pareto(2.5) errors at 16, 64 and 256 replicates; with
+/// 1024 by the methods that do not resample, for the mark; and on images of 256 pixels, means of 64 of the last two, at
+/// 16 and 64. The pixels' scales are equal, or quantiles of e^Z (lognormal_scales). Gaussian
+/// errors and images with equal scales at 16 replicates take all the runs, the rest a fifth.
 std::vector<CoverageRow> interval_coverage(const CoverageRequest& request);
 
 }  // namespace halfslope

@@ -4,6 +4,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "analysis/bootstrap.h"
@@ -18,6 +19,8 @@ std::span<const IntervalMethodInfo> interval_methods() {
        "Satterthwaite 1946"},
       {IntervalMethod::kDelta, "delta", "Student's t on log MSE by the delta method", ""},
       {IntervalMethod::kBca, "bca", "bootstrap percentiles, bias-corrected and accelerated", "Efron 1987"},
+      {IntervalMethod::kReciprocalT, "reciprocal-t",
+       "studentised bootstrap of 1/MSE, half-widths × (1 + (1.5 + skewness²/2)/R)", ""},
   };
   return kMethods;
 }
@@ -31,33 +34,35 @@ std::optional<IntervalMethod> parse_interval_method(std::string_view name) {
   return found == interval_methods().end() ? std::nullopt : std::optional(found->method);
 }
 
-namespace {
-
-bool usable(std::span<const double> values) {
-  return values.size() >= 2 &&
-         std::ranges::all_of(values, [](double value) { return std::isfinite(value) && value >= 0; });
-}
-
-Moments moments_of(std::span<const double> values) {
+std::vector<std::optional<Interval>> log_mean_intervals(std::span<const IntervalMethod> methods,
+                                                        std::span<const double> values, std::uint64_t seed,
+                                                        double level) {
+  const auto resamples = [](IntervalMethod method) {
+    return method != IntervalMethod::kChi2 && method != IntervalMethod::kDelta;
+  };
+  std::optional<MeanBootstrap> bootstrap;
+  if (std::ranges::any_of(methods, resamples)) bootstrap = bootstrap_mean(values, seed);
   Moments moments;
-  moments.add(values);
-  return moments;
+  if (std::ranges::all_of(values, [](double value) { return value >= 0; })) moments.add(values);
+  std::vector<std::optional<Interval>> intervals;
+  for (const IntervalMethod method : methods) {
+    if (!resamples(method)) {
+      intervals.push_back(log_mean_interval(method, moments, level));
+    } else if (!bootstrap) {
+      intervals.emplace_back();
+    } else if (method == IntervalMethod::kBca) {
+      intervals.push_back(log_mean_bca(*bootstrap, level));
+    } else {
+      intervals.push_back(method == IntervalMethod::kBootstrapT ? log_mean_bootstrap_t(*bootstrap, level)
+                                                                : log_mean_reciprocal_t(*bootstrap, level));
+    }
+  }
+  return intervals;
 }
-
-}  // namespace
 
 std::optional<Interval> log_mean_interval(IntervalMethod method, std::span<const double> values, std::uint64_t seed,
                                           double level) {
-  switch (method) {
-    case IntervalMethod::kBootstrapT:
-      return log_mean_bootstrap_t(values, seed, level);
-    case IntervalMethod::kBca:
-      return log_mean_bca(values, seed, level);
-    case IntervalMethod::kChi2:
-    case IntervalMethod::kDelta:
-      break;
-  }
-  return usable(values) ? log_mean_interval(method, moments_of(values), level) : std::nullopt;
+  return log_mean_intervals(std::span(&method, 1), values, seed, level).front();
 }
 
 std::optional<Interval> log_mean_interval(IntervalMethod method, const Moments& moments, double level) {
@@ -76,22 +81,10 @@ std::optional<Interval> log_mean_chi2(const Moments& moments, double level) {
                   centre + std::log(dof / boost::math::quantile(law, 0.5 - level / 2))};
 }
 
-std::optional<Interval> log_mean_bca(std::span<const double> values, std::uint64_t seed, double level) {
-  if (!usable(values)) return std::nullopt;
-  const Moments moments = moments_of(values);
-  if (!(moments.mean > 0) || !std::isfinite(moments.central2) || !(moments.central2 > 0)) return std::nullopt;
-  const double n = static_cast<double>(values.size());
-  std::vector<double> relative(values.begin(), values.end());  // mean 1, as in log_mean_bootstrap_t
-  for (double& value : relative) value /= moments.mean;
-
-  std::vector<std::uint32_t> indices(values.size());
-  std::vector<double> means(kBootstrapResamples);
-  for (std::uint32_t resample = 0; resample < kBootstrapResamples; ++resample) {
-    draw_resample(seed, resample, static_cast<std::uint32_t>(values.size()), indices);
-    double sum = 0;
-    for (const std::uint32_t index : indices) sum += relative[index];
-    means[resample] = sum / n;
-  }
+std::optional<Interval> log_mean_bca(const MeanBootstrap& bootstrap, double level) {
+  const Moments& moments = bootstrap.moments;
+  std::vector<double> means;
+  for (const MeanBootstrap::Resample& resample : bootstrap.resamples) means.push_back(resample.mean);
   std::ranges::sort(means);
   const auto below = std::ranges::lower_bound(means, 1.0), above = std::ranges::upper_bound(means, 1.0);
   const double share =
@@ -112,6 +105,26 @@ std::optional<Interval> log_mean_bca(std::span<const double> values, std::uint64
   };
   const Interval interval = {end(0.5 - level / 2), end(0.5 + level / 2)};
   return std::isfinite(interval.lo) ? std::optional(interval) : std::nullopt;  // a resample of zeros has no logarithm
+}
+
+// With the values in units of their mean, m = 1: T* = (1 − 1/m*) √n m*²/s* = m* (m* − 1)/(s*/√n).
+std::optional<Interval> log_mean_reciprocal_t(const MeanBootstrap& bootstrap, double level) {
+  const Moments& moments = bootstrap.moments;
+  std::vector<double> studentised;
+  studentised.reserve(bootstrap.resamples.size());
+  for (const auto& [mean, se] : bootstrap.resamples) {
+    if (se > 0) studentised.push_back(mean * (mean - 1) / se);
+  }
+  const double n = static_cast<double>(moments.count);
+  const double skewness = moments.m3() / std::pow(moments.m2(), 1.5);
+  const double widening = 1 + (1.5 + skewness * skewness / 2) / n;
+  // Of −1/μ, which grows with μ.
+  const std::optional<Interval> interval = bootstrap_t_interval(-1, bootstrap.se, widening, studentised, level);
+  if (!interval) return std::nullopt;
+  const auto end = [&](double negated) {
+    return negated < 0 ? std::log(moments.mean) - std::log(-negated) : std::numeric_limits<double>::infinity();
+  };
+  return Interval{end(interval->lo), end(interval->hi)};
 }
 
 }  // namespace halfslope

@@ -43,4 +43,8 @@ std::optional<Interval> log_mean_t(const Moments& moments, double level = 0.95);
 /// negative or not finite. Below 16 values coverage is not certified.
 std::optional<Interval> log_mean_bootstrap_t(std::span<const double> values, std::uint64_t seed, double level = 0.95);
 
+/// The same from resamples that were drawn already.
+struct MeanBootstrap;
+std::optional<Interval> log_mean_bootstrap_t(const MeanBootstrap& bootstrap, double level = 0.95);
+
 }  // namespace halfslope

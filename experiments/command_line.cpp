@@ -61,6 +61,7 @@ std::string bash_completion(const CLI::App& app) {
          "    --scene) words=\"$(halfslope list scenes --names)\" ;;\n"
          "    --measures) words=\"$(halfslope list measures --names) none\" ;;\n"
          "    figure) words=\"$(halfslope list figures --names)\" ;;\n"
+         "    selfcheck) words=\"coverage\" ;;\n"
          "    list) words=\"samplers estimators scenes measures figures statuses\" ;;\n"
          "    *) case \"${COMP_WORDS[1]}\" in\n" +
          cases + "    *) words=\"" + commands +
@@ -252,6 +253,25 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
       ->check(CLI::Range(1, 4096));
   figure_app->add_flag("--quiet", figure.quiet, "no progress");
 
+  SelfcheckArguments selfcheck;
+  CLI::App* selfcheck_app =
+      app.add_subcommand("selfcheck", "measure again what is promised: the coverage of every interval");
+  selfcheck_app->add_option("what", selfcheck.what, "coverage")->required()->type_name("WHAT");
+  selfcheck_app->add_option("--study,--studies", selfcheck.studies, "only these (default: all)")
+      ->delimiter(',')
+      ->type_name("NAME,...");
+  selfcheck_app->add_option("--runs", selfcheck.runs, "simulated experiments a row (default: each study's own)")
+      ->type_name("N")
+      ->check(CLI::Range(10, 100'000'000));
+  selfcheck_app->add_option("--seed", selfcheck.seed, "of the random numbers")
+      ->capture_default_str()
+      ->type_name("S")
+      ->check(whole_number());
+  selfcheck_app->add_option("--threads", selfcheck.threads, "threads; the table does not depend on it (default: all)")
+      ->check(CLI::Range(1, 4096));
+  selfcheck_app->add_flag("--json", selfcheck.json, "as JSON");
+  selfcheck_app->add_flag("--quiet", selfcheck.quiet, "no progress");
+
   CLI::App* completion_app =
       app.add_subcommand("completion", "print a bash completion script: source <(halfslope completion)");
 
@@ -283,6 +303,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   if (render_app->parsed()) return render_command(render, catalogue);
   if (reference_app->parsed()) return reference_command(reference, catalogue);
   if (figure_app->parsed()) return figure_command(figure, catalogue);
+  if (selfcheck_app->parsed()) return selfcheck_command(selfcheck);
   if (completion_app->parsed()) fmt::print("{}", bash_completion(app));
   return 0;
 }

@@ -80,4 +80,14 @@ struct FigureArguments {
 };
 int figure_command(const FigureArguments& arguments, const Catalogue& catalogue);
 
+struct SelfcheckArguments {
+  std::string what;                  ///< coverage
+  std::vector<std::string> studies;  ///< names; empty: all
+  std::optional<std::int64_t> runs;  ///< of every row; default: each study's own
+  std::uint64_t seed = 1;
+  int threads = 0;
+  bool quiet = false, json = false;
+};
+int selfcheck_command(const SelfcheckArguments& arguments);
+
 }  // namespace halfslope

@@ -59,9 +59,8 @@ std::string progress_line(const ProgressState& state, int columns, bool colour) 
   const double rate = state.seconds > 0 ? state.done / state.seconds : 0;
   const std::string left = state.done > 0 ? clock_time(state.seconds * (1 - fraction) / fraction) : "?:??";
   // Rounded down: 100 % means done.
-  const std::string numbers =
-      fmt::format("{:3d} %  {} elapsed, {} left, {} samples/s", static_cast<int>(fraction * 100),
-                  clock_time(state.seconds), left, short_count(rate));
+  const std::string numbers = fmt::format("{:3d} %  {} elapsed, {} left, {} {}/s", static_cast<int>(fraction * 100),
+                                          clock_time(state.seconds), left, short_count(rate), state.unit);
   const auto room = static_cast<std::size_t>(std::max(columns - 1, 1));  // the last column would wrap the cursor
   const std::size_t words = state.label.size() + numbers.size() + std::string_view(" [] ").size();
   if (words + kNarrowestBar > room) return numbers.substr(0, room);
@@ -73,12 +72,13 @@ std::string progress_line(const ProgressState& state, int columns, bool colour) 
 
 std::string summary_line(const ProgressState& state) {
   const double rate = state.seconds > 0 ? state.done / state.seconds : 0;
-  return fmt::format("done: {}, {} samples in {}, {} samples/s", state.label, short_count(state.done),
-                     clock_time(state.seconds), short_count(rate));
+  return fmt::format("done: {}, {} {} in {}, {} {}/s", state.label, short_count(state.done), state.unit,
+                     clock_time(state.seconds), short_count(rate), state.unit);
 }
 
-Progress::Progress(std::string label, double total_work, bool quiet)
+Progress::Progress(std::string label, double total_work, bool quiet, std::string unit)
     : label_(std::move(label)),
+      unit_(std::move(unit)),
       total_(total_work),
       quiet_(quiet),
       terminal_(!quiet && on_terminal()),
@@ -91,7 +91,7 @@ Progress::~Progress() {
 
 ProgressState Progress::state() const {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  return {label_, done_.load(), total_, elapsed.count()};
+  return {label_, done_.load(), total_, elapsed.count(), unit_};
 }
 
 void Progress::advance(double work) {

@@ -9,11 +9,12 @@
 
 namespace halfslope {
 
-/// What a bar shows. Work is counted in samples.
+/// What a bar shows.
 struct ProgressState {
   std::string label;
   double done = 0, total = 0;
-  double seconds = 0;  ///< since the start
+  double seconds = 0;            ///< since the start
+  std::string unit = "samples";  ///< that work is counted in
 };
 
 /// "veach-mis [#####-----]  50 %  1:05 elapsed, 1:05 left, 43.1 M samples/s", narrower than
@@ -34,8 +35,8 @@ std::string short_count(double count);
 /// respected.
 class Progress {
  public:
-  /// `total_work`: the samples still to take; work found finished is not counted.
-  Progress(std::string label, double total_work, bool quiet);
+  /// `total_work`: the units still to do; work found finished is not counted.
+  Progress(std::string label, double total_work, bool quiet, std::string unit = "samples");
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();  ///< clears an unfinished bar, so that an error stands on a line of its own
@@ -50,7 +51,7 @@ class Progress {
   ProgressState state() const;
   void draw();
 
-  const std::string label_;
+  const std::string label_, unit_;
   const double total_;
   const bool quiet_, terminal_, colour_;
   const std::chrono::steady_clock::time_point start_;
