@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/status.h"
+#include "analysis/tails.h"
 
 namespace halfslope {
 namespace {
@@ -29,8 +30,9 @@ Corrected corrected(const CellData& data, double ReplicateErrors::*member, const
   if (!result.value || !with_interval) return result;
   std::vector<double> values;
   for (const ReplicateErrors& replicate : data.per_replicate) values.push_back(replicate.*member);
-  const std::optional<Interval> interval =
-      values.empty() ? log_mean_t(over_replicates) : log_mean_bootstrap_t(values, data.bootstrap_seed);
+  const std::optional<Interval> interval = values.empty()
+                                               ? log_mean_interval(data.interval, over_replicates)
+                                               : log_mean_interval(data.interval, values, data.bootstrap_seed);
   if (interval) {
     result.lo = if_positive(std::exp(interval->lo) - reference_share);
     result.hi = if_positive(std::exp(interval->hi) - reference_share);
@@ -66,7 +68,10 @@ CellStatistics summarise(const CellData& data) {
   if (!deterministic) {
     row.variance = if_finite(data.sum_m2 * (replicates / (replicates - 1)) / static_cast<double>(data.integrals));
     row.kurtosis = if_finite(data.sum_m4 / data.sum_m2_squared);
+    row.kurtosis_corrected = corrected_kurtosis(data.sum_m2_squared, data.sum_m4, data.replicates);
   }
+  if (data.mse.mean > 0)
+    row.worst_share = if_finite(data.worst_squared_error / (data.mse.mean * static_cast<double>(data.integrals)));
 
   const Corrected mse = corrected(data, &ReplicateErrors::mse, data.mse, data.reference_mse, exact, !deterministic);
   row.rmse = root(mse.value);
@@ -79,8 +84,9 @@ CellStatistics summarise(const CellData& data) {
   row.relmse_hi = relmse.hi;
 
   if (data.infinite_variance) {
-    for (std::optional<double>* number : {&row.variance, &row.rmse, &row.rmse_lo, &row.rmse_hi, &row.relmse,
-                                          &row.relmse_lo, &row.relmse_hi, &row.kurtosis}) {
+    for (std::optional<double>* number :
+         {&row.variance, &row.rmse, &row.rmse_lo, &row.rmse_hi, &row.relmse, &row.relmse_lo, &row.relmse_hi,
+          &row.kurtosis, &row.kurtosis_corrected, &row.worst_share}) {
       number->reset();
     }
     if (!data.deterministic) row.bias_se.reset();
@@ -97,9 +103,12 @@ CellStatistics summarise(const CellData& data) {
   status.mark_if(!deterministic && data.replicates < kCertifiedReplicates, "few-replicates");
   // Replicates that all err alike: the estimator has not met what contributes, or rounding is all that is left.
   status.mark_if(!deterministic && !exact && row.variance == 0.0, "no-spread");
-  status.mark_if(row.kurtosis && *row.kurtosis > std::max(5.0, replicates / 40), "heavy-tailed");
+  const bool heavy = row.kurtosis_corrected && *row.kurtosis_corrected > kurtosis_limit(data.replicates);
+  status.mark_if(heavy, "heavy-tailed");
+  status.mark_if(!exact && data.mse.mean < kRoundingReach * data.rounding_mse, "floor");
   status.mark_if(not_positive || data.reference_mse > kReferenceShare * data.mse.mean, "reference-limited");
   row.status = status.text();
+  row.certified = (row.rmse_lo || row.rmse_hi) && data.replicates >= kCertifiedReplicates && !heavy;
   return row;
 }
 

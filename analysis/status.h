@@ -26,5 +26,7 @@ class Status {
 inline constexpr int kCertifiedReplicates = 16;
 /// A reference whose variance is a larger share of the measured mean squared error than this limits the measurement.
 inline constexpr double kReferenceShare = 0.1;
+/// Mean squared errors below so many times the square of the values' own rounding error may be that error.
+inline constexpr double kRoundingReach = 100;
 
 }  // namespace halfslope

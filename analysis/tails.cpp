@@ -30,6 +30,11 @@ double kurtosis_limit(std::int64_t replicates) { return std::max(5.0, static_cas
 
 std::int64_t worst_count(std::int64_t integrals) { return (integrals + 999) / 1000; }
 
+double mean_squared_error(const Moments& moments, double truth) {
+  const double bias = moments.mean - truth;
+  return moments.m2() + bias * bias;
+}
+
 void keep_largest(std::vector<double>& values, std::int64_t count) {
   const auto larger = [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a > b; };
   const auto kept = std::min(values.size(), static_cast<std::size_t>(count));

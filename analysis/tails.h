@@ -5,6 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "analysis/moments.h"
+
 namespace halfslope {
 
 /// K = Σ_p μ4_p / Σ_p σ_p⁴ of the errors' laws, estimated without the bias that few replicates bring to the plain
@@ -21,6 +23,9 @@ double kurtosis_limit(std::int64_t replicates);
 
 /// ⌈P/1000⌉: how many of P integrals are the worst 0.1 %, at least one.
 std::int64_t worst_count(std::int64_t integrals);
+
+/// Mean of (x − truth)² over the values x that the moments are of: m2 + (x̄ − truth)².
+double mean_squared_error(const Moments& moments, double truth);
 
 /// Keeps of `values` the `count` largest, descending (all where there are fewer); NaN counts as the largest.
 void keep_largest(std::vector<double>& values, std::int64_t count);

@@ -36,6 +36,7 @@ std::string key_help(const std::string& key) {
       {"images", "sample counts to write EXRs for, or none (default none)"},
       {"precision", "f32, f64 or f32,f64 (default f32)"},
       {"measures", "of the samplers' points, see `halfslope list measures`, or none (default none)"},
+      {"interval", "of the RMSE: bootstrap-t, chi2, delta, bca or reciprocal-t (default bootstrap-t)"},
   };
   const auto found = kHelp.find(key);
   return found == kHelp.end() ? "" : found->second;

@@ -172,6 +172,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   write_reference_images(folder.path(), plan, references);
   write("rates.csv", rates_csv(outcome.results));
+  write("tails.csv", tails_csv(outcome.results));
   write("regions.csv", regions_csv(outcome.results));
   write("convergence.csv", convergence_csv(outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));

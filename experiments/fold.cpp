@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "analysis/compensated_sum.h"
+#include "analysis/tails.h"
 #include "core/random.h"
 
 namespace halfslope {
@@ -67,6 +68,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   data.reference_mse = reference.mean_variance;
   data.reference_relmse = mean_relative_variance(reference);
   data.bootstrap_seed = hash_text(to_string(cell_name(plan, cell)));
+  data.interval = plan.interval;
   data.deterministic = !pass.randomised;
   data.infinite_variance = has_infinite_variance(*scene.source);
   const auto integrals = static_cast<double>(data.integrals);
@@ -77,6 +79,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   }
   std::vector<Moments> merged;  // of every integral, where batches have to be merged or an image is written
   CompensatedSum abs_error, m2, m2_squared, m4;
+  std::vector<double> worst;
   folded.first_bad_replicate = std::numeric_limits<std::uint64_t>::max();
   for (std::int64_t b = 0; b < pass.batches(); ++b) {
     const Unit& first = plan.units[pass.first_unit + static_cast<std::uint64_t>(b) * tiles];
@@ -97,6 +100,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
       m2.add(part.spread.m2);
       m2_squared.add(part.spread.m2_squared);
       m4.add(part.spread.m4);
+      worst.insert(worst.end(), part.worst.begin(), part.worst.end());
       if (!part.integrals.empty()) {
         merged.resize(static_cast<std::size_t>(data.integrals));
         const std::size_t begin = plan.units[unit].first_pixel * channels;
@@ -135,11 +139,18 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   }
   SpreadSums spread;
   if (pass.batches() > 1) {
-    for (const Moments& m : merged) spread.add(m);
+    for (std::size_t i = 0; i < merged.size(); ++i) {
+      spread.add(merged[i]);
+      worst.push_back(mean_squared_error(merged[i], reference.value[i]));
+    }
   }
   data.sum_m2 = m2.value() + spread.m2;
   data.sum_m2_squared = m2_squared.value() + spread.m2_squared;
   data.sum_m4 = m4.value() + spread.m4;
+  keep_largest(worst, worst_count(data.integrals));
+  CompensatedSum worst_sum;
+  for (const double squared : worst) worst_sum.add(squared);
+  data.worst_squared_error = worst_sum.value();
   data.mae = abs_error.value() / static_cast<double>(pass.replicates);
   if (cell.image) folded.integrals = std::move(merged);
   return folded;

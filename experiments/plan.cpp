@@ -242,6 +242,7 @@ CellName cell_name(const Plan& plan, const Cell& cell) {
 
 Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   Plan plan;
+  plan.interval = spec.interval;
   for (const auto& name : spec.scenes) plan.scenes.push_back(plan_scene(spec, catalogue, name, plan));
   place_estimators(spec, plan);
   const auto is_picture = [](const PlannedScene& scene) { return scene.source->takes_resolution(); };

@@ -66,12 +66,13 @@ struct Plan {
   std::vector<PlannedScene> scenes;
   std::vector<Pass> passes;
   std::vector<Unit> units;
-  std::vector<Cell> cells;                        ///< in the order of the tables
-  MeasuresPlan measures;                          ///< of the samplers' points
-  std::vector<std::string> sampler_fingerprints;  ///< of the samplers that have one
-  std::vector<std::string> skips;                 ///< what is not done, and why
-  std::vector<std::string> left_out;              ///< those of them that take something from the tables
-  double evaluations() const;                     ///< integrand evaluations of all units
+  std::vector<Cell> cells;                                ///< in the order of the tables
+  MeasuresPlan measures;                                  ///< of the samplers' points
+  std::vector<std::string> sampler_fingerprints;          ///< of the samplers that have one
+  std::vector<std::string> skips;                         ///< what is not done, and why
+  std::vector<std::string> left_out;                      ///< those of them that take something from the tables
+  IntervalMethod interval = IntervalMethod::kBootstrapT;  ///< of the RMSE
+  double evaluations() const;                             ///< integrand evaluations of all units
 };
 
 /// Resolves names and splits the work. Throws Error for names that are not in the catalogue (naming the nearest),

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "analysis/intervals.h"
+#include "analysis/interval_methods.h"
 #include "core/random.h"
 
 namespace halfslope {
@@ -13,16 +13,17 @@ struct Squared {
   std::optional<double> value, lo, hi;
 };
 
-Squared squared(const std::vector<double>& replicates, std::uint64_t seed, double reference_share) {
+Squared squared(const std::vector<double>& replicates, IntervalMethod method, std::uint64_t seed,
+                double reference_share) {
   Moments moments;
   moments.add(std::span<const double>(replicates));
   Squared result;
   if (!std::isfinite(moments.mean) || moments.mean - reference_share <= 0) return result;
   result.value = moments.mean - reference_share;
-  if (const auto interval = log_mean_bootstrap_t(replicates, seed)) {
+  if (const auto interval = log_mean_interval(method, replicates, seed)) {
     const double lo = std::exp(interval->lo) - reference_share, hi = std::exp(interval->hi) - reference_share;
     if (lo > 0) result.lo = lo;
-    if (hi > 0) result.hi = hi;
+    if (hi > 0 && std::isfinite(hi)) result.hi = hi;
   }
   return result;
 }
@@ -51,8 +52,9 @@ RegionResult join(const std::string& name, const FoldedCell& folded, const std::
   const auto pixels = static_cast<double>(result.pixels);
   for (double& x : mse) x /= pixels;
   for (double& x : relmse) x /= pixels;
-  const Squared plain = squared(mse, hash_text(name, folded.data.bootstrap_seed), share / pixels);
-  const Squared relative = squared(relmse, hash_text(name, folded.data.bootstrap_seed + 1), relative_share / pixels);
+  const Squared plain = squared(mse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed), share / pixels);
+  const Squared relative =
+      squared(relmse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed + 1), relative_share / pixels);
   result.rmse = root(plain.value), result.rmse_lo = root(plain.lo), result.rmse_hi = root(plain.hi);
   result.relmse = relative.value, result.relmse_lo = relative.lo, result.relmse_hi = relative.hi;
   return result;

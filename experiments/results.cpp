@@ -28,12 +28,15 @@ CellFacts facts_of(const Plan& plan, const Cell& cell, const Reference& referenc
   return facts;
 }
 
-CellResult result_of(const Plan& plan, const Cell& cell, const FoldedCell& folded, const ReferenceShares& shares) {
+CellResult result_of(const Plan& plan, const Cell& cell, FoldedCell& folded, const CellFacts& facts,
+                     const ReferenceShares& shares) {
   const PlannedScene& scene = plan.scenes[cell.scene];
   CellResult result;
   result.name = cell_name(plan, cell);
   result.replicates = plan.passes[cell.pass].replicates;
   result.pixels = static_cast<std::int64_t>(scene.pixels.size());
+  result.facts = facts;
+  folded.data.rounding_mse = facts.rounding_mse;
   result.statistics = summarise(folded.data);
   result.mse = folded.data.mse.mean;
   for (const ReplicateErrors& errors : folded.data.per_replicate) result.replicate_mse.push_back(errors.mse);
@@ -63,6 +66,7 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
            "interrupted while the tables were made; all units are done: run the same command again to go on");
     }
     while (end < plan.cells.size() && same_line(begin, end)) ++end;
+    const CellFacts facts = facts_of(plan, plan.cells[begin], references[plan.cells[begin].scene], samplers);
     std::vector<FoldedCell> line(end - begin);
     with_threads(threads, [&](int) {
       tbb::parallel_for(
@@ -71,17 +75,13 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
             const Cell& cell = plan.cells[c];
             FoldedCell& folded = line[c - begin] = fold_cell(plan, cell, references[cell.scene], journal);
             visitor.as_folded(cell, folded);
-            results.cells[c] = result_of(plan, cell, folded, shares[cell.scene]);
+            results.cells[c] = result_of(plan, cell, folded, facts, shares[cell.scene]);
             folded.integrals = {};
             folded.regions = {};
           },
           tbb::simple_partitioner());
     });
-    const CellFacts facts = facts_of(plan, plan.cells[begin], references[plan.cells[begin].scene], samplers);
-    for (std::size_t c = begin; c < end; ++c) {
-      results.cells[c].facts = facts;
-      visitor.in_order(plan.cells[c], line[c - begin]);
-    }
+    for (std::size_t c = begin; c < end; ++c) visitor.in_order(plan.cells[c], line[c - begin]);
   }
   results.rates = fit_rates(results.cells);
   return results;

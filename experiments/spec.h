@@ -10,6 +10,8 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/interval_methods.h"
+
 namespace halfslope {
 
 enum class Precision : std::uint8_t { kF32, kF64 };
@@ -36,6 +38,7 @@ struct Spec {
   std::vector<std::uint64_t> images;             ///< sample counts to write EXRs for
   std::vector<Precision> precision = {Precision::kF32};
   std::vector<std::string> measures;  ///< of the points that the samplers gave; in the order of measure_catalogue()
+  IntervalMethod interval = IntervalMethod::kBootstrapT;  ///< of the RMSE
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;
@@ -59,7 +62,8 @@ void apply_flag(Spec& spec, std::string_view key, std::string_view value, std::s
 void validate(const Spec& spec);
 
 /// Everything that determines the estimates of a run, as canonical JSON (sorted keys, no spaces): no name, no places,
-/// no output folder, no threads, and no measures, which are taken of the points alone.
+/// no output folder, no threads, no measures, which are taken of the points alone, and no interval, which is made of
+/// the estimates afterwards.
 std::string canonical_json(const Spec& spec);
 
 /// 16 hexadecimal digits that stand for canonical_json(spec).

@@ -171,6 +171,19 @@ void set_measures(Spec& spec, const Key& key, const SpecValue& value) {
   spec.measures = std::move(list);
 }
 
+void set_interval(Spec& spec, const Key& key, const SpecValue& value) {
+  const SpecItem& item = only_item(key, value);
+  const auto method = parse_interval_method(text(key, value, item));
+  if (!method) refuse(key, value, item);
+  spec.interval = *method;
+}
+
+std::vector<std::string> interval_names() {
+  std::vector<std::string> names;
+  for (const IntervalMethodInfo& info : interval_methods()) names.emplace_back(info.name);
+  return names;
+}
+
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its
 // part in canonical_json.
 const std::vector<Key>& keys() {
@@ -197,6 +210,7 @@ const std::vector<Key>& keys() {
       {"images", "one or several different counts that are among the samples, or 'none'", true, set_images},
       {"precision", "f32, f64, or a list of both", true, set_precision},
       {"measures", fmt::format("{}, a list of different ones, or 'none'", joined(measure_names())), true, set_measures},
+      {"interval", joined(interval_names()), false, set_interval},
   };
   return table;
 }

@@ -8,6 +8,8 @@
 namespace halfslope {
 namespace {
 
+constexpr const char* kNotCertified = "~";  // before an interval
+
 std::string short_number(const std::optional<double>& x) { return x ? fmt::format("{:.3g}", *x) : "-"; }
 std::string between(const std::optional<double>& lo, const std::optional<double>& hi) {
   return lo || hi ? fmt::format("[{}, {}]", short_number(lo), short_number(hi)) : "";
@@ -71,6 +73,8 @@ std::string main_table(const Results& results, const Slice& slice) {
     for (const CellResult* cell : slice.cells) {
       if (cell->name.sampler != sampler) continue;
       const CellStatistics& s = cell->statistics;
+      const std::string mark = s.certified ? "" : kNotCertified;
+      const auto marked = [&](const std::string& interval) { return interval.empty() ? "" : mark + interval; };
       const auto rate = std::ranges::find_if(
           results.rates, [&](const RateResult& r) { return same_line(results.cells[r.first_cell].name, cell->name); });
       std::string slope = "-", slope_interval;
@@ -81,11 +85,15 @@ std::string main_table(const Results& results, const Slice& slice) {
       } else if (rate != results.rates.end() && rate->fit.samples_hi > 0) {
         slope_interval = rate->fit.status;  // why there is none; the row's own status speaks of this N alone
       }
-      rows.push_back({sampler, cell->name.estimator, short_number(s.rmse), between(s.rmse_lo, s.rmse_hi),
-                      short_number(s.relmse), between(s.relmse_lo, s.relmse_hi), slope, slope_interval, s.status});
+      rows.push_back({sampler, cell->name.estimator, short_number(s.rmse), marked(between(s.rmse_lo, s.rmse_hi)),
+                      short_number(s.relmse), marked(between(s.relmse_lo, s.relmse_hi)), slope, slope_interval,
+                      s.status});
     }
   }
-  return align(rows, 2);
+  std::string text = align(rows, 2);
+  if (text.find(std::string(kNotCertified) + "[") != std::string::npos)
+    text += fmt::format("  {} not certified: its coverage may be less than 95 %; status says why\n", kNotCertified);
+  return text;
 }
 
 // RMSE of each shape's pixels, a column an estimator, on one sampler.

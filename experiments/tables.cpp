@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "analysis/tails.h"
 #include "core/csv.h"
 
 namespace halfslope {
@@ -58,6 +59,22 @@ std::string rates_csv(const Results& results) {
     csv.cell(window ? std::optional(rate.fit.samples_lo) : std::nullopt);
     csv.cell(window ? std::optional(rate.fit.samples_hi) : std::nullopt);
     csv.cell(rate.theory).cell(rate.fit.status).end_row();
+  }
+  return csv.text();
+}
+
+std::string tails_csv(const Results& results) {
+  CsvWriter csv({"scene", "estimator", "sampler", "precision", "samples", "kurtosis", "kurtosis_corrected",
+                 "kurtosis_limit", "median_abs_error", "worst_share", "certified", "relmse_lo", "relmse_hi"});
+  for (const CellResult& cell : results.cells) {
+    const CellStatistics& s = cell.statistics;
+    key_cells(csv, cell.name);
+    csv.cell(cell.name.samples).cell(s.kurtosis);
+    csv.cell(s.kurtosis_corrected ? if_finite(*s.kurtosis_corrected) : std::nullopt);
+    csv.cell(s.kurtosis ? std::optional(kurtosis_limit(cell.replicates)) : std::nullopt);
+    csv.cell(s.median_abs_error).cell(s.worst_share);
+    csv.cell(s.rmse_lo || s.rmse_hi ? (s.certified ? "yes" : "no") : "");
+    csv.cell(s.relmse_lo).cell(s.relmse_hi).end_row();
   }
   return csv.text();
 }

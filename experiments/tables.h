@@ -25,6 +25,9 @@ std::string rates_csv(const Results& results);
 /// Empty where no scene has parts.
 std::string regions_csv(const Results& results);
 
+/// tails.csv: how far a cell's intervals can be trusted, and why.
+std::string tails_csv(const Results& results);
+
 /// The rates of at least three scenes as a table: a row a sampler (and estimator, where there are several), a column a
 /// scene. Empty where there are fewer, or one row.
 std::string rates_side_by_side(const Results& results);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <variant>
 
+#include "analysis/tails.h"
 #include "estimators/pass_evaluator.h"
 #include "experiments/bytes.h"
 
@@ -29,11 +30,13 @@ void SpreadSums::add(const Moments& moments) {
 }
 
 void CellPart::append_to(std::vector<std::byte>& bytes) const {
-  for (const std::uint64_t size : {replicates.size(), regions.size(), integrals.size()}) append_bytes(bytes, size);
+  for (const std::uint64_t size : {replicates.size(), regions.size(), integrals.size(), worst.size()})
+    append_bytes(bytes, size);
   append_bytes<ReplicateSums>(bytes, std::span(replicates));
   append_bytes<std::uint32_t>(bytes, std::span(regions));
   append_bytes<SquaredErrors>(bytes, std::span(squared));
   append_bytes<Moments>(bytes, std::span(integrals));
+  append_bytes<double>(bytes, std::span(worst));
   append_bytes(bytes, spread);
   for (const std::uint64_t number : {nonfinite, first_bad_replicate, first_bad_pixel}) append_bytes(bytes, number);
   abs_error.append_to(bytes);
@@ -41,11 +44,12 @@ void CellPart::append_to(std::vector<std::byte>& bytes) const {
 
 CellPart CellPart::read(std::span<const std::byte> bytes) {
   CellPart part;
-  const auto sizes = take_bytes<std::uint64_t>(bytes, 3);
+  const auto sizes = take_bytes<std::uint64_t>(bytes, 4);
   part.replicates = take_bytes<ReplicateSums>(bytes, sizes[0]);
   part.regions = take_bytes<std::uint32_t>(bytes, sizes[1]);
   part.squared = take_bytes<SquaredErrors>(bytes, sizes[0] * sizes[1]);
   part.integrals = take_bytes<Moments>(bytes, sizes[2]);
+  part.worst = take_bytes<double>(bytes, sizes[3]);
   part.spread = take_bytes<SpreadSums>(bytes);
   part.nonfinite = take_bytes<std::uint64_t>(bytes);
   part.first_bad_replicate = take_bytes<std::uint64_t>(bytes);
@@ -193,10 +197,15 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
       for (std::size_t c = 0; c < channels; ++c) {
         const Moments& m = moments[cell * channels + c];
         if (wants_integrals[cell]) parts[cell].integrals.push_back(m);
-        if (pass.batches() == 1) parts[cell].spread.add(m);
+        if (pass.batches() == 1) {
+          parts[cell].spread.add(m);
+          parts[cell].worst.push_back(mean_squared_error(m, reference.value[position * channels + c]));
+        }
       }
     }
   }
+  const auto integrals = static_cast<std::int64_t>(scene.pixels.size() * channels);
+  for (CellPart& part : parts) keep_largest(part.worst, worst_count(integrals));
   return parts;
 }
 
