@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/reference_noise.h"
 #include "analysis/status.h"
 #include "analysis/tails.h"
 
@@ -22,7 +23,7 @@ struct Corrected {
 
 /// `member` names the squared error of one replicate, `over_replicates` its moments.
 Corrected corrected(const CellData& data, double ReplicateErrors::*member, const Moments& over_replicates,
-                    double reference_share, bool exact, bool with_interval) {
+                    double reference_share, double reference_noise, bool exact, bool with_interval) {
   // Errors that are all 0 against an exact reference are known to be 0; any other 0 would be a clamped one.
   if (exact && reference_share == 0) return {0.0, {}, {}};
   Corrected result;
@@ -34,8 +35,9 @@ Corrected corrected(const CellData& data, double ReplicateErrors::*member, const
                                                ? log_mean_interval(data.interval, over_replicates)
                                                : log_mean_interval(data.interval, values, data.bootstrap_seed);
   if (interval) {
-    result.lo = if_positive(std::exp(interval->lo) - reference_share);
-    result.hi = if_positive(std::exp(interval->hi) - reference_share);
+    const Interval wide = widened_for_reference(*interval, over_replicates.mean, reference_noise);
+    result.lo = if_positive(std::exp(wide.lo) - reference_share);
+    result.hi = if_positive(std::exp(wide.hi) - reference_share);
   }
   return result;
 }
@@ -73,12 +75,13 @@ CellStatistics summarise(const CellData& data) {
   if (data.mse.mean > 0)
     row.worst_share = if_finite(data.worst_squared_error / (data.mse.mean * static_cast<double>(data.integrals)));
 
-  const Corrected mse = corrected(data, &ReplicateErrors::mse, data.mse, data.reference_mse, exact, !deterministic);
+  const Corrected mse = corrected(data, &ReplicateErrors::mse, data.mse, data.reference_mse, data.reference_mse_noise,
+                                  exact, !deterministic);
   row.rmse = root(mse.value);
   row.rmse_lo = root(mse.lo);
   row.rmse_hi = root(mse.hi);
-  const Corrected relmse =
-      corrected(data, &ReplicateErrors::relmse, data.relmse, data.reference_relmse, exact, !deterministic);
+  const Corrected relmse = corrected(data, &ReplicateErrors::relmse, data.relmse, data.reference_relmse,
+                                     data.reference_relmse_noise, exact, !deterministic);
   row.relmse = relmse.value;
   row.relmse_lo = relmse.lo;
   row.relmse_hi = relmse.hi;

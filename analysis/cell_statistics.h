@@ -39,6 +39,8 @@ struct CellData {
   double reference_se = 0;                ///< standard error of that mean
   double reference_mse = 0;               ///< V̄ = mean over p of Var(R̂_p)
   double reference_relmse = 0;            ///< mean over p of Var(R̂_p) / (R̂_p² + 0.01)
+  double reference_mse_noise = 0;         ///< variance of mean δ², δ = R̂ − I (analysis/reference_noise.h)
+  double reference_relmse_noise = 0;      ///< that of mean δ²/(R̂² + 0.01)
   std::int64_t nonfinite = 0;             ///< non-finite estimates met
   std::uint64_t bootstrap_seed = 0;       ///< of the cell's name
   IntervalMethod interval = IntervalMethod::kBootstrapT;
@@ -65,8 +67,8 @@ struct CellStatistics {
 ///               randomised one no bias_se
 ///   variance    Σ_p m2_p · R/(R − 1) / P, so M = (R − 1)/R · variance + mean_p(ē_p²)
 ///   rmse        √(M − V̄); [rmse_lo, rmse_hi] is the 95 % interval of log M (log_mean_interval over the replicates'
-///               MSE, or over their moments where they are not kept), less V̄, rooted; an end that is not positive then,
-///               or not finite, is empty
+///               MSE, or over their moments where they are not kept), made wider for the reference's own error
+///               (widened_for_reference), less V̄, rooted; an end that is not positive then, or not finite, is empty
 ///   relmse      mean e²/(R̂² + 0.01) less the reference's share, its interval likewise
 ///   kurtosis    Σ_p m4_p / Σ_p m2_p² over replicates about each integral's own mean; 3 for normal errors, whatever
 ///               their variances; kurtosis_corrected is the same without the bias of few replicates (analysis/tails.h)

@@ -80,13 +80,9 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   settings.quiet = a.quiet;
   settings.label = a.scene;
   settings.estimator = check_render(*source, a.estimator, settings, catalogue);
-  Reference picture;  // one replicate: values without a variance
-  picture.value = render_replicate(*source, settings, catalogue);
-  picture.variance.assign(picture.value.size(), 0);
-  ExrImage image = reference_image(*source, picture);
-  std::erase_if(image.channels, [](const ExrImage::Channel& c) { return c.name.starts_with("variance"); });
+  const std::vector<double> values = render_replicate(*source, settings, catalogue);
   const std::string out = a.out.empty() ? path_component(a.scene) + ".exr" : a.out;
-  write_exr(out, image);
+  write_exr(out, picture(*source, values));
   if (!a.quiet) message("wrote {}\n", out);
   return kDone;
 }
@@ -101,7 +97,6 @@ int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   goal.samples = a.samples.value_or(few ? 1 << 19 : 8192);
   if (few && !a.samples) goal.most_samples = std::uint64_t{1} << 28;
   if (goal.samples < 4) fail(ExitCode::kUsage, "--samples: at least 4, found {}", goal.samples);
-  goal.compare_samples = goal.samples / 4;
   goal.relative_error = a.relative_error.value_or(few ? 1e-5 : 1e-3);
   goal.most_replicates = a.most_replicates;
   if (!(goal.relative_error > 0))

@@ -17,6 +17,7 @@
 #include "experiments/joined.h"
 #include "experiments/manifest.h"
 #include "experiments/message.h"
+#include "experiments/plan_references.h"
 #include "experiments/tables.h"
 
 namespace halfslope {
@@ -118,10 +119,11 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
                               {"units", plan.units.size()},
                               {"evaluations", plan.evaluations()},
                               {"discrepancies", plan.measures.rows()},
+                              {"references", describe_references(plan, catalogue.samplers)},
                               {"skipped", plan.skips}}
                              .dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
-      fmt::print("{}", describe_plan(spec, plan));
+      fmt::print("{}", describe_plan(spec, plan, catalogue));
     }
     return static_cast<int>(ExitCode::kDone);
   }

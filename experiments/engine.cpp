@@ -19,40 +19,14 @@
 #include "experiments/manifest.h"
 #include "experiments/message.h"
 #include "experiments/parallel.h"
+#include "experiments/plan_references.h"
 #include "experiments/progress.h"
-#include "experiments/reference.h"
 #include "experiments/run_folder.h"
 #include "experiments/tables.h"
 #include "experiments/unit.h"
 
 namespace halfslope {
 namespace {
-
-/// A reference's variance is at most this share of the smallest mean squared error expected, and the error expected is
-/// the reference's own estimator's at the largest N, halved lest another does better.
-constexpr double kReferenceErrorShare = 0.01 / 2;
-
-ReferenceGoal reference_goal(const Plan& plan, std::size_t scene) {
-  std::uint64_t largest = 1;
-  for (const Cell& cell : plan.cells) {
-    if (cell.scene == scene) largest = std::max(largest, cell.samples);
-  }
-  ReferenceGoal goal;
-  goal.compare_samples = largest;
-  goal.samples = std::max<std::uint64_t>(256, 4 * largest);
-  goal.error_share = kReferenceErrorShare;
-  return goal;
-}
-
-std::vector<Reference> make_references(const Plan& plan, const Catalogue& catalogue, const RunOptions& options) {
-  std::vector<Reference> references;
-  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
-    const PlannedScene& scene = plan.scenes[s];
-    references.push_back(make_reference(*scene.source, scene.name, scene.pixels, reference_goal(plan, s),
-                                        {options.threads, options.quiet, default_cache()}, catalogue.samplers));
-  }
-  return references;
-}
 
 std::string run_hash(const Spec& spec, const Plan& plan) {
   std::string text = spec_hash(spec);
@@ -146,7 +120,8 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     message("halfslope: {} bytes at the journal's end were damaged by an interruption; those units are done again\n",
             journal.dropped_bytes());
   }
-  const std::vector<Reference> references = make_references(plan, catalogue, options);
+  const std::vector<Reference> references =
+      make_references(plan, catalogue.samplers, {options.threads, options.quiet, default_cache()});
   if (journal.size() < plan.units.size()) {
     Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
   } else if (!options.quiet) {
@@ -195,15 +170,8 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
 }
 
 void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue, const std::filesystem::path& out) {
-  for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
-    const PlannedScene& scene = plan.scenes[s];
-    const auto held =
-        cached_replicates(*scene.source, scene.pixels, reference_goal(plan, s), default_cache(), catalogue.samplers);
-    if (held > 0) {
-      plan.skips.push_back(fmt::format("{}: {} replicates of its reference are in {}: not rendered again", scene.name,
-                                       held, default_cache().string()));
-    }
-  }
+  for (std::string& line : describe_cached_references(plan, catalogue.samplers, default_cache()))
+    plan.skips.push_back(std::move(line));
   if (!std::filesystem::exists(out / "journal")) return;
   try {
     const RunFolder folder(out);
@@ -216,7 +184,7 @@ void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue
   }
 }
 
-std::string describe_plan(const Spec& spec, const Plan& plan) {
+std::string describe_plan(const Spec& spec, const Plan& plan, const Catalogue& catalogue) {
   const auto count = [](auto n, const char* one, const char* many) {
     return fmt::format("{} {}", n, n == 1 ? one : many);
   };
@@ -235,6 +203,9 @@ std::string describe_plan(const Spec& spec, const Plan& plan) {
                         count(pass.replicates, "replicate", "replicates"), count(dims, "dimension", "dimensions"));
   }
   text += describe_measures(plan.measures);
+  const auto references = describe_references(plan, catalogue.samplers);
+  if (!references.empty()) text += "references:\n";
+  for (const auto& line : references) text += "  " + line + "\n";
   text += "skipped:\n";
   for (const auto& skip : plan.skips) text += "  " + skip + "\n";
   return text;

@@ -31,7 +31,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
 /// Adds to the plan's skips what an earlier run left: units in the journal of `out`, replicates of references.
 void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue, const std::filesystem::path& out);
 
-/// What --dry-run prints: the work, and what is skipped and why.
-std::string describe_plan(const Spec& spec, const Plan& plan);
+/// What --dry-run prints: the work, what the references will be asked for, and what is skipped and why.
+std::string describe_plan(const Spec& spec, const Plan& plan, const Catalogue& catalogue);
 
 }  // namespace halfslope

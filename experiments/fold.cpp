@@ -11,14 +11,6 @@
 namespace halfslope {
 namespace {
 
-double mean_relative_variance(const Reference& reference) {
-  CompensatedSum sum;
-  for (std::size_t i = 0; i < reference.value.size(); ++i) {
-    sum.add(reference.variance[i] / (reference.value[i] * reference.value[i] + 0.01));
-  }
-  return sum.value() / static_cast<double>(reference.value.size());
-}
-
 /// One batch of replicates over all tiles.
 struct Batch {
   std::vector<ReplicateSums> sums;
@@ -66,7 +58,9 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   data.reference_mean = reference.mean;
   data.reference_se = reference.mean_se;
   data.reference_mse = reference.mean_variance;
-  data.reference_relmse = mean_relative_variance(reference);
+  data.reference_mse_noise = reference.mse_noise;
+  data.reference_relmse = reference.mean_relative_variance;
+  data.reference_relmse_noise = reference.relmse_noise;
   data.bootstrap_seed = hash_text(to_string(cell_name(plan, cell)));
   data.interval = plan.interval;
   data.deterministic = !pass.randomised;

@@ -65,10 +65,18 @@ void check_image_folders(const Spec& spec) {
   }
 }
 
+ExrImage picture(const IntegralSource& source, std::span<const double> values) {
+  Layers layers(source);
+  layers.add("", [&](std::size_t i) { return values[i]; });
+  return layers.take();
+}
+
 ExrImage reference_image(const IntegralSource& source, const Reference& reference) {
   Layers layers(source);
   layers.add("", [&](std::size_t i) { return reference.value[i]; });
   layers.add("variance", [&](std::size_t i) { return reference.variance[i]; });
+  layers.add("half_a", [&](std::size_t i) { return reference.half_a[i]; });
+  layers.add("half_b", [&](std::size_t i) { return reference.half_b[i]; });
   return layers.take();
 }
 

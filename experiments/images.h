@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "core/exr.h"
@@ -16,11 +17,15 @@ namespace halfslope {
 void write_cell_image(const std::filesystem::path& folder, const Plan& plan, const Cell& cell, const FoldedCell& folded,
                       const std::vector<Reference>& references);
 
-/// reference.exr, or reference-<scene>.exr where several scenes have pictures: R, G, B and the layer `variance`.
+/// reference.exr, or reference-<scene>.exr where several scenes have pictures: R, G, B and the layers `variance`,
+/// `half_a` and `half_b`.
 void write_reference_images(const std::filesystem::path& folder, const Plan& plan,
                             const std::vector<Reference>& references);
 
-/// The picture of a reference over all pixels of its scene.
+/// Values over all pixels of a scene, pixel-major, as R, G, B.
+ExrImage picture(const IntegralSource& source, std::span<const double> values);
+
+/// The picture of a reference over all pixels of its scene, with all its layers.
 ExrImage reference_image(const IntegralSource& source, const Reference& reference);
 
 /// A name as one component of a path: '/' becomes '_', and of a name above 200 bytes a hash and its end remain.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "analysis/compensated_sum.h"
+#include "analysis/reference_noise.h"
 #include "core/error.h"
 #include "experiments/reference_renderer.h"
 
@@ -19,6 +20,17 @@ double mean_variance(const std::vector<Moments>& moments) {
   CompensatedSum sum;
   for (const Moments& m : moments) sum.add(m.variance());
   return sum.value() / static_cast<double>(moments.size());
+}
+
+// Over the pixels at some positions; all where there are none.
+double mean_variance(const std::vector<Moments>& moments, const std::vector<std::size_t>& positions,
+                     std::size_t channels) {
+  if (positions.empty()) return mean_variance(moments);
+  CompensatedSum sum;
+  for (const std::size_t position : positions) {
+    for (std::size_t c = 0; c < channels; ++c) sum.add(moments[position * channels + c].variance());
+  }
+  return sum.value() / static_cast<double>(positions.size() * channels);
 }
 
 // √ of the mean over integrals of (standard error / value)²; integrals without spread are exact.
@@ -46,32 +58,39 @@ Reference closed_form_reference(const IntegralSource& source, const std::vector<
     }
   }
   reference.variance.assign(reference.value.size(), 0.0);
+  reference.half_a = reference.half_b = reference.value;
   reference.mean = sum.value() / static_cast<double>(reference.value.size());
   return reference;
 }
 
-/// How near a reference came to its goal.
+/// How near a reference came to its goal: its variance as a multiple of what the goal allows (0 where it asks for
+/// none), its relative error, and about how many replicates would reach it.
 struct Outcome {
   bool reached;
-  double share, relative;
+  double excess, relative, needed;
 };
+
+// Variances fall like one over the replicates, so how many are needed is known to a factor after the first.
+constexpr double kPlainlyTooMany = 4;
 
 Outcome render_until(ReferenceRenderer& renderer, ReferenceState& state, const ReferenceGoal& goal, bool may_grow) {
   const std::int64_t most = may_grow ? std::min(kFewReplicates, goal.most_replicates) : goal.most_replicates;
   for (std::int64_t replicates = kFirstReplicates;; replicates *= 2) {
     renderer.extend(state, replicates);
-    const double own = mean_variance(state.full) / static_cast<double>(replicates);
-    if (!std::isfinite(own)) return {true, 0, 0};  // more would not mend it; the cells will be invalid
-    const double expected = mean_variance(state.compared), share = expected > 0 ? own / expected : 0;
-    const double relative = relative_error(state.full);
-    const bool reached = (goal.error_share == 0 || share <= goal.error_share) &&
-                         (goal.relative_error == 0 || relative <= goal.relative_error);
-    if (reached || 2 * replicates > most) return {reached, share, relative};
-    // Variances fall like one over the replicates, so this many would be needed.
-    const double share_left = goal.error_share > 0 ? share / goal.error_share : 0;
-    const double relative_left = goal.relative_error > 0 ? std::pow(relative / goal.relative_error, 2) : 0;
-    if (may_grow && static_cast<double>(replicates) * std::max(share_left, relative_left) > kFewReplicates)
-      return {false, share, relative};
+    const auto n = static_cast<double>(replicates);
+    if (!std::isfinite(mean_variance(state.moments))) return {true, 0, 0, 0};  // the cells will be invalid
+    Outcome at = {true, 0, relative_error(state.moments), 0};
+    if (goal.most_variance > 0) {
+      at.excess = mean_variance(state.moments, goal.positions, renderer.channels()) / n / goal.most_variance;
+      at.reached = at.excess <= 1;
+      at.needed = n * at.excess;
+    }
+    if (goal.relative_error > 0) {
+      at.reached = at.reached && at.relative <= goal.relative_error;
+      at.needed = std::max(at.needed, n * std::pow(at.relative / goal.relative_error, 2));
+    }
+    if (at.reached || 2 * replicates > most) return at;
+    if (may_grow ? at.needed > kFewReplicates : at.needed > kPlainlyTooMany * static_cast<double>(most)) return at;
   }
 }
 
@@ -82,14 +101,24 @@ Reference finished(const ReferenceRenderer& renderer, const ReferenceState& stat
   const auto replicates = static_cast<double>(reference.replicates);
   reference.origin = fmt::format("balance heuristic, halton-owen, f64, {} replicates of N = {}", reference.replicates,
                                  reference.samples);
-  for (const Moments& m : state.full) {
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < state.moments.size(); ++i) {
+    const Moments& m = state.moments[i];
     reference.value.push_back(m.mean);
     reference.variance.push_back(m.variance() / replicates);
+    reference.half_a.push_back(state.half[i]);
+    reference.half_b.push_back(2 * m.mean - state.half[i]);
+    weights.push_back(1 / (m.mean * m.mean + 0.01));
   }
-  reference.mean_variance = mean_variance(state.full) / replicates;
+  reference.mean_variance = mean_variance(state.moments) / replicates;
+  reference.mse_noise = mean_square_noise(reference.variance, renderer.channels());
+  CompensatedSum relative;
+  for (std::size_t i = 0; i < weights.size(); ++i) relative.add(weights[i] * reference.variance[i]);
+  reference.mean_relative_variance = relative.value() / static_cast<double>(weights.size());
+  reference.relmse_noise = mean_square_noise(reference.variance, renderer.channels(), weights);
   Moments means;
   std::vector<double> image_means;
-  for (const double sum : state.replicate_sums) image_means.push_back(sum / static_cast<double>(state.full.size()));
+  for (const double sum : state.replicate_sums) image_means.push_back(sum / static_cast<double>(state.moments.size()));
   means.add(std::span<const double>(image_means));
   reference.mean = means.mean;
   reference.mean_se = means.standard_error();
@@ -100,14 +129,19 @@ Reference finished(const ReferenceRenderer& renderer, const ReferenceState& stat
                          const ReferenceGoal& goal, const Outcome& outcome) {
   const std::string spent = fmt::format("scene '{}': after {} replicates of N = {} the reference's", name,
                                         state.replicates(), renderer.samples());
-  if (goal.error_share > 0 && outcome.share > goal.error_share) {
-    fail(ExitCode::kBadInput, "{} variance is still {:.3g} times what errors at N = {} allow; measure at smaller N",
-         spent, outcome.share / goal.error_share, goal.compare_samples);
+  const std::string needed =
+      fmt::format("about {:.2g} replicates would do, {} are the most", outcome.needed, goal.most_replicates);
+  if (outcome.excess > 1) {
+    fail(ExitCode::kBadInput,
+         "{} variance is still {:.3g} times what the smallest error to be measured allows, that of {}: {}; measure "
+         "smaller N, or leave that one out",
+         spent, outcome.excess, goal.asked_by, needed);
   }
-  fail(ExitCode::kBadInput,
-       "{} relative error is still {:.3g}, and {:.3g} was asked for; give it more --samples or --max-replicates, or "
-       "ask for a larger --relative-error",
-       spent, outcome.relative, goal.relative_error);
+  fail(
+      ExitCode::kBadInput,
+      "{} relative error is still {:.3g}, and {:.3g} was asked for: {}; give it more --samples or --max-replicates, or "
+      "ask for a larger --relative-error",
+      spent, outcome.relative, goal.relative_error, needed);
 }
 
 }  // namespace
@@ -137,15 +171,18 @@ Reference make_reference(const IntegralSource& source, const std::string& name, 
   }
 }
 
-std::int64_t cached_replicates(const IntegralSource& source, const std::vector<int>& pixels, const ReferenceGoal& goal,
-                               const std::filesystem::path& cache, const SamplerCatalogue& samplers) {
-  if (has_closed_form(source, pixels)) return 0;
+CachedReplicates cached_replicates(const IntegralSource& source, const std::vector<int>& pixels,
+                                   const ReferenceGoal& goal, const std::filesystem::path& cache,
+                                   const SamplerCatalogue& samplers) {
+  CachedReplicates held;
+  if (has_closed_form(source, pixels)) return held;
   const ReferenceOptions options = {0, true, cache};
   const std::string name;
-  const ReferenceRenderer renderer(source, name, pixels, goal, options, samplers);
-  std::int64_t held = 0;
-  for (std::int64_t r = kFirstReplicates; renderer.cached(r); r *= 2) held = r;
-  return held;
+  for (ReferenceGoal at = goal;; at.samples *= kMoreSamples) {
+    const ReferenceRenderer renderer(source, name, pixels, at, options, samplers);
+    for (std::int64_t r = kFirstReplicates; renderer.cached(r); r *= 2) held = {renderer.samples(), r};
+    if (at.samples * kMoreSamples > goal.most_samples) return held;
+  }
 }
 
 std::filesystem::path default_cache() {

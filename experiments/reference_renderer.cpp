@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "analysis/compensated_sum.h"
+#include "core/assertion.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
 #include "core/kernel_library.h"
@@ -26,8 +27,9 @@ constexpr std::size_t kFewPixels = 256;
 
 /// What one task adds: a tile of pixels over a chunk of replicates.
 struct Piece {
-  std::vector<Moments> full, compared;  ///< of the tile's integrals
-  std::vector<double> sums;             ///< Σ over them, for each replicate of the chunk
+  std::vector<Moments> moments;  ///< of the tile's integrals
+  std::vector<double> half;      ///< their means over the first half of the chunk
+  std::vector<double> sums;      ///< Σ over them, for each replicate of the chunk
 };
 
 }  // namespace
@@ -41,15 +43,14 @@ ReferenceRenderer::ReferenceRenderer(const IntegralSource& source, const std::st
     allocation_.counts.push_back(1);
   }
   const auto round = static_cast<std::uint64_t>(allocation_.round());
-  rounds_ = {std::max<std::uint64_t>(1, goal.compare_samples / round),
-             std::max<std::uint64_t>(2, goal.samples / round)};
-  if (rounds_[0] >= rounds_[1]) rounds_[0] = rounds_[1] / 2;
-  if (const auto legal = samplers.make("halton-owen")->illegal(rounds_[1], allocation_.layout(source.techniques()))) {
+  rounds_ = std::max<std::uint64_t>(2, goal.samples / round);
+  if (const auto legal = samplers.make("halton-owen")->illegal(rounds_, allocation_.layout(source.techniques()))) {
     fail(ExitCode::kBadInput, "scene '{}': a reference takes at most N = {} samples a replicate, asked for {}", name,
-         legal->below.value_or(0) * round, rounds_[1] * round);
+         legal->below.value_or(0) * round, rounds_ * round);
   }
-  key_text_ = fmt::format("halfslope {} reference\n{}\n{}\nrounds {} {}\npixels", version(), isa_class(active_isa()),
-                          source.fingerprint(), rounds_[0], rounds_[1]);
+  // Everything that the replicates depend on, and the shape of what is kept of them.
+  key_text_ = fmt::format("halfslope {} reference in halves, from replicate {}\n{}\n{}\nrounds {}\npixels", version(),
+                          kFirstReferenceReplicate, isa_class(active_isa()), source.fingerprint(), rounds_);
   for (const int pixel : pixels) key_text_ += fmt::format(" {}", pixel);
 }
 
@@ -61,6 +62,7 @@ void ReferenceRenderer::render(ReferenceState& state, std::int64_t replicates) {
   const std::size_t chunks = static_cast<std::size_t>(more) / chunk;
   const std::size_t tile_pixels = pixels_.size() <= kFewPixels ? 1 : kTile;
   const std::size_t tiles = (pixels_.size() + tile_pixels - 1) / tile_pixels;
+  assert_equal(more, std::max<std::int64_t>(first, kLanes), "replicates that a reference is extended by");
   const StreamKey key = stream_key(0, "halton-owen", "reference");
   Progress progress(fmt::format("{}: reference, replicates {} to {}", name_, first + 1, replicates),
                     static_cast<double>(samples()) * static_cast<double>(more) * static_cast<double>(pixels_.size()),
@@ -71,12 +73,12 @@ void ReferenceRenderer::render(ReferenceState& state, std::int64_t replicates) {
     const std::size_t tile = index / chunks, begin = index % chunks * chunk;
     PassEvaluator<double> evaluator(
         samplers_.make("halton-owen"), source_.techniques(), allocation_,
-        {{allocation_.techniques.size() == 1 ? HeuristicKind::kSingle : HeuristicKind::kBalance, 0}}, rounds_,
+        {{allocation_.techniques.size() == 1 ? HeuristicKind::kSingle : HeuristicKind::kBalance, 0}}, {rounds_},
         source_.channels());
     Piece& piece = pieces[index];
     piece.sums.resize(chunk);
-    std::vector<double> values(2 * channels * chunk);
-    const auto row = [&](std::size_t n, std::size_t c) { return values.data() + (n * channels + c) * chunk; };
+    std::vector<double> values(channels * chunk);
+    const auto row = [&](std::size_t c) { return values.data() + c * chunk; };
     const std::size_t end = std::min(pixels_.size(), (tile + 1) * tile_pixels);
     for (std::size_t p = tile * tile_pixels; p < end; ++p) {
       const PixelIntegral pixel = source_.pixel(pixels_[p]);
@@ -84,21 +86,22 @@ void ReferenceRenderer::render(ReferenceState& state, std::int64_t replicates) {
         if (interrupted()) stop = true;
         if (stop) return;
         if (pixel.integral) {
-          evaluator.run(*pixel.integral, key, static_cast<std::uint32_t>(pixels_[p]),
-                        static_cast<std::uint32_t>(static_cast<std::size_t>(first) + begin + r));
+          evaluator.run(
+              *pixel.integral, key, static_cast<std::uint32_t>(pixels_[p]),
+              kFirstReferenceReplicate + static_cast<std::uint32_t>(static_cast<std::size_t>(first) + begin + r));
         }
-        for (std::size_t n = 0; n < 2; ++n) {
-          for (std::size_t c = 0; c < channels; ++c) {
-            const double* in = pixel.integral ? evaluator.estimates(0, n, static_cast<int>(c)) : nullptr;
-            for (std::size_t l = 0; l < kLanes; ++l) row(n, c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
-          }
+        for (std::size_t c = 0; c < channels; ++c) {
+          const double* in = pixel.integral ? evaluator.estimates(0, 0, static_cast<int>(c)) : nullptr;
+          for (std::size_t l = 0; l < kLanes; ++l) row(c)[r + l] = pixel.constant[c] + (in ? in[l] : 0.0);
         }
         progress.advance(static_cast<double>(samples()) * kLanes);
       }
       for (std::size_t c = 0; c < channels; ++c) {
-        piece.compared.emplace_back().add(std::span<const double>(row(0, c), chunk));
-        piece.full.emplace_back().add(std::span<const double>(row(1, c), chunk));
-        for (std::size_t r = 0; r < chunk; ++r) piece.sums[r] += row(1, c)[r];
+        Moments half;
+        half.add(std::span<const double>(row(c), chunk / 2));
+        piece.half.push_back(half.mean);
+        piece.moments.emplace_back().add(std::span<const double>(row(c), chunk));
+        for (std::size_t r = 0; r < chunk; ++r) piece.sums[r] += row(c)[r];
       }
     }
   };
@@ -107,13 +110,16 @@ void ReferenceRenderer::render(ReferenceState& state, std::int64_t replicates) {
   if (stop) fail(ExitCode::kInterrupted, "interrupted while the reference was rendered; run again to start it anew");
   progress.finish();
 
-  state.full.resize(pixels_.size() * channels);
-  state.compared.resize(pixels_.size() * channels);
+  // What there was is one half; of the very first replicates, which are one chunk, their own first half is.
+  const bool at_first = state.moments.empty();
+  state.moments.resize(pixels_.size() * channels);
+  state.half.resize(state.moments.size());
+  for (std::size_t i = 0; i < state.half.size(); ++i) state.half[i] = state.moments[i].mean;
   for (std::size_t index = 0; index < pieces.size(); ++index) {
     const std::size_t offset = index / chunks * tile_pixels * channels;
-    for (std::size_t i = 0; i < pieces[index].full.size(); ++i) {
-      state.full[offset + i].merge(pieces[index].full[i]);
-      state.compared[offset + i].merge(pieces[index].compared[i]);
+    for (std::size_t i = 0; i < pieces[index].moments.size(); ++i) {
+      state.moments[offset + i].merge(pieces[index].moments[i]);
+      if (at_first) state.half[offset + i] = pieces[index].half[i];
     }
   }
   for (std::size_t r = 0; r < static_cast<std::size_t>(more); ++r) {
@@ -140,8 +146,8 @@ bool ReferenceRenderer::load(ReferenceState& state, std::int64_t replicates) con
     if (!std::equal(found.begin(), found.end(), key.begin(), key.end())) return false;
     const std::size_t integrals = pixels_.size() * static_cast<std::size_t>(source_.channels());
     ReferenceState found_state;
-    found_state.full = take_bytes<Moments>(cursor, integrals);
-    found_state.compared = take_bytes<Moments>(cursor, integrals);
+    found_state.moments = take_bytes<Moments>(cursor, integrals);
+    found_state.half = take_bytes<double>(cursor, integrals);
     found_state.replicate_sums = take_bytes<double>(cursor, static_cast<std::size_t>(replicates));
     state = std::move(found_state);
     return true;
@@ -155,8 +161,8 @@ void ReferenceRenderer::save(const ReferenceState& state) const {
   std::vector<std::byte> body;
   const std::string key = full_key(state.replicates());
   append_bytes<char>(body, std::span(key));
-  append_bytes<Moments>(body, std::span(state.full));
-  append_bytes<Moments>(body, std::span(state.compared));
+  append_bytes<Moments>(body, std::span(state.moments));
+  append_bytes<double>(body, std::span(state.half));
   append_bytes<double>(body, std::span(state.replicate_sums));
   std::vector<std::byte> bytes;
   append_bytes(bytes, hash64(body));

@@ -14,9 +14,10 @@
 
 namespace halfslope {
 
-/// A reference in the making: the moments over replicates of every integral, at N and at the smaller N it will judge.
+/// A reference in the making: the moments over replicates of every integral.
 struct ReferenceState {
-  std::vector<Moments> full, compared;
+  std::vector<Moments> moments;
+  std::vector<double> half;            ///< each integral's mean over the first half of the replicates
   std::vector<double> replicate_sums;  ///< Σ over integrals, a number for each replicate
 
   std::int64_t replicates() const { return static_cast<std::int64_t>(replicate_sums.size()); }
@@ -25,17 +26,17 @@ struct ReferenceState {
 /// Renders replicates of a reference: balance heuristic, halton-owen, binary64; or finds them in the cache.
 class ReferenceRenderer {
  public:
-  /// Replicates of `goal.samples` each, which also stand at `goal.compare_samples` on the way. Throws Error(kBadInput)
-  /// for more samples than the points have.
+  /// Replicates of `goal.samples` each. Throws Error(kBadInput) for more samples than the points have.
   ReferenceRenderer(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                     const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers);
 
-  std::uint64_t samples() const { return rounds_[1] * static_cast<std::uint64_t>(allocation_.round()); }
+  std::uint64_t samples() const { return rounds_ * static_cast<std::uint64_t>(allocation_.round()); }
+  std::size_t channels() const { return static_cast<std::size_t>(source_.channels()); }
 
   bool cached(std::int64_t replicates) const {
     return !options_.cache.empty() && std::filesystem::exists(file(replicates));
   }
-  /// Brings the state to `replicates`, from the cache if it is there.
+  /// Brings the state to `replicates`, from the cache if it is there: 16, or twice what the state has.
   void extend(ReferenceState& state, std::int64_t replicates) {
     if (load(state, replicates)) return;
     render(state, replicates);
@@ -57,7 +58,7 @@ class ReferenceRenderer {
   const ReferenceOptions& options_;
   const SamplerCatalogue& samplers_;
   Allocation allocation_;
-  std::vector<std::uint64_t> rounds_;
+  std::uint64_t rounds_;
   std::string key_text_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "analysis/interval_methods.h"
+#include "analysis/reference_noise.h"
 #include "core/random.h"
 
 namespace halfslope {
@@ -14,14 +15,15 @@ struct Squared {
 };
 
 Squared squared(const std::vector<double>& replicates, IntervalMethod method, std::uint64_t seed,
-                double reference_share) {
+                double reference_share, double reference_noise) {
   Moments moments;
   moments.add(std::span<const double>(replicates));
   Squared result;
   if (!std::isfinite(moments.mean) || moments.mean - reference_share <= 0) return result;
   result.value = moments.mean - reference_share;
   if (const auto interval = log_mean_interval(method, replicates, seed)) {
-    const double lo = std::exp(interval->lo) - reference_share, hi = std::exp(interval->hi) - reference_share;
+    const Interval wide = widened_for_reference(*interval, moments.mean, reference_noise);
+    const double lo = std::exp(wide.lo) - reference_share, hi = std::exp(wide.hi) - reference_share;
     if (lo > 0) result.lo = lo;
     if (hi > 0 && std::isfinite(hi)) result.hi = hi;
   }
@@ -32,11 +34,11 @@ std::optional<double> root(const std::optional<double>& x) { return x ? std::opt
 
 // Leaves joined into a part of the image: pixel-weighted means for each replicate.
 RegionResult join(const std::string& name, const FoldedCell& folded, const std::vector<std::uint32_t>& leaves,
-                  const ReferenceShares& shares) {
+                  const ReferenceShares& shares, int channels) {
   RegionResult result;
   result.region = name;
   std::vector<double> mse, relmse;
-  double share = 0, relative_share = 0;
+  ReferenceShare share;
   for (const std::uint32_t leaf : leaves) {
     const RegionErrors& errors = folded.regions.at(leaf);
     result.pixels += errors.pixels;
@@ -46,15 +48,18 @@ RegionResult join(const std::string& name, const FoldedCell& folded, const std::
       mse[r] += errors.mse[r] * static_cast<double>(errors.pixels);
       relmse[r] += errors.relmse[r] * static_cast<double>(errors.pixels);
     }
-    share += shares.at(leaf).plain;
-    relative_share += shares.at(leaf).relative;
+    const ReferenceShare& part = shares.at(leaf);
+    share.plain += part.plain, share.relative += part.relative;
+    share.plain_squares += part.plain_squares, share.relative_squares += part.relative_squares;
   }
   const auto pixels = static_cast<double>(result.pixels);
   for (double& x : mse) x /= pixels;
   for (double& x : relmse) x /= pixels;
-  const Squared plain = squared(mse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed), share / pixels);
-  const Squared relative =
-      squared(relmse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed + 1), relative_share / pixels);
+  const double integrals = pixels * static_cast<double>(channels), square = integrals * integrals;
+  const Squared plain = squared(mse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed),
+                                share.plain / integrals, 2 * share.plain_squares / square);
+  const Squared relative = squared(relmse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed + 1),
+                                   share.relative / integrals, 2 * share.relative_squares / square);
   result.rmse = root(plain.value), result.rmse_lo = root(plain.lo), result.rmse_hi = root(plain.hi);
   result.relmse = relative.value, result.relmse_lo = relative.lo, result.relmse_hi = relative.hi;
   return result;
@@ -67,12 +72,14 @@ ReferenceShares reference_shares(const PlannedScene& scene, const Reference& ref
   const auto channels = static_cast<std::size_t>(scene.source->channels());
   for (std::size_t p = 0; p < scene.pixels.size(); ++p) {
     ReferenceShare& share = shares[static_cast<std::uint32_t>(scene.source->region(scene.pixels[p]))];
-    ++share.pixels;
+    double plain = 0, relative = 0;
     for (std::size_t c = 0; c < channels; ++c) {
       const double value = reference.value[p * channels + c], variance = reference.variance[p * channels + c];
-      share.plain += variance / static_cast<double>(channels);
-      share.relative += variance / (value * value + 0.01) / static_cast<double>(channels);
+      plain += variance;
+      relative += variance / (value * value + 0.01);
     }
+    share.plain += plain, share.plain_squares += plain * plain;
+    share.relative += relative, share.relative_squares += relative * relative;
   }
   return shares;
 }
@@ -82,6 +89,7 @@ std::vector<RegionResult> region_results(const PlannedScene& scene, const Folded
   std::vector<RegionResult> results;
   if (folded.regions.empty() || folded.regions.begin()->second.mse.empty()) return results;
   const auto names = scene.source->regions();
+  const int channels = scene.source->channels();
   std::vector<std::pair<std::string, std::vector<std::uint32_t>>> shapes;  // in the scene's order
   for (const auto& [leaf, errors] : folded.regions) {
     const std::string shape = names[leaf].substr(0, names[leaf].find('/'));
@@ -91,9 +99,9 @@ std::vector<RegionResult> region_results(const PlannedScene& scene, const Folded
   results.push_back({"all", static_cast<std::int64_t>(scene.pixels.size()), whole.rmse, whole.rmse_lo, whole.rmse_hi,
                      whole.relmse, whole.relmse_lo, whole.relmse_hi});
   for (const auto& [shape, leaves] : shapes) {
-    results.push_back(join(shape, folded, leaves, shares));
+    results.push_back(join(shape, folded, leaves, shares, channels));
     if (leaves.size() == 1 && names[leaves[0]] == shape) continue;
-    for (const std::uint32_t leaf : leaves) results.push_back(join(names[leaf], folded, {leaf}, shares));
+    for (const std::uint32_t leaf : leaves) results.push_back(join(names[leaf], folded, {leaf}, shares, channels));
   }
   return results;
 }

@@ -21,10 +21,9 @@ struct RegionResult {
   std::optional<double> rmse, rmse_lo, rmse_hi, relmse, relmse_lo, relmse_hi;
 };
 
-/// Sums over the pixels of one region of the reference's variance, plain and relative: means over channels.
+/// Sums over one region of the reference's variance, plain and relative, and of the squares of those of each pixel.
 struct ReferenceShare {
-  double plain = 0, relative = 0;
-  std::int64_t pixels = 0;
+  double plain = 0, relative = 0, plain_squares = 0, relative_squares = 0;
 };
 using ReferenceShares = std::map<std::uint32_t, ReferenceShare>;
 ReferenceShares reference_shares(const PlannedScene& scene, const Reference& reference);

@@ -1,0 +1,35 @@
+#include "analysis/reference_noise.h"
+
+#include <cmath>
+
+#include "analysis/compensated_sum.h"
+#include "core/assertion.h"
+
+namespace halfslope {
+namespace {
+
+constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
+
+}  // namespace
+
+double mean_square_noise(std::span<const double> variances, std::size_t channels, std::span<const double> weights) {
+  if (!weights.empty()) assert_equal(weights.size(), variances.size(), "weights of integrals");
+  assert_equal(variances.size() % channels, 0u, "integrals left over of whole pixels");
+  if (variances.empty()) return 0;
+  CompensatedSum sum;
+  for (std::size_t first = 0; first < variances.size(); first += channels) {
+    double pixel = 0;
+    for (std::size_t i = first; i < first + channels; ++i) pixel += (weights.empty() ? 1.0 : weights[i]) * variances[i];
+    sum.add(pixel * pixel);
+  }
+  const auto integrals = static_cast<double>(variances.size());
+  return 2 * sum.value() / (integrals * integrals);
+}
+
+Interval widened_for_reference(Interval log_interval, double mean, double noise) {
+  if (!(noise > 0)) return log_interval;
+  const double centre = std::log(mean), reach = kNormalQuantile * std::sqrt(noise) / mean;
+  return {centre - std::hypot(centre - log_interval.lo, reach), centre + std::hypot(log_interval.hi - centre, reach)};
+}
+
+}  // namespace halfslope
