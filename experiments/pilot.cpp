@@ -20,21 +20,13 @@ namespace {
 constexpr std::size_t kMostPixels = 64;
 constexpr const char* kStandIn = "halton-owen";
 
-// Of the pixels that are sampled at all: known constants have no error, whatever measures them.
-std::vector<std::size_t> choose_positions(const PlannedScene& scene) {
+// Those of the chosen pixels that are sampled at all: known constants have no error, whatever measures them.
+std::vector<std::size_t> sampled_positions(const PlannedScene& scene) {
   std::vector<std::size_t> sampled;
   for (std::size_t p = 0; p < scene.pixels.size(); ++p) {
     if (scene.source->pixel(scene.pixels[p]).integral) sampled.push_back(p);
   }
-  const std::size_t count = std::min(kMostPixels, sampled.size());
-  const StreamKey key = stream_key(0, "pixels", "pilot");
-  std::vector<std::size_t> positions;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t begin = i * sampled.size() / count, end = (i + 1) * sampled.size() / count;
-    const std::uint64_t word = random_word(key, Draw::kHigh, 0, static_cast<std::uint32_t>(i), 0, 0);
-    positions.push_back(sampled[begin + static_cast<std::size_t>((word * (end - begin)) >> 32)]);
-  }
-  return positions;
+  return sampled;
 }
 
 bool same_points(const PilotPass& a, const PilotPass& b) {
@@ -81,14 +73,14 @@ std::vector<Spread> measure(const PlannedScene& scene, const PilotPass& pass, in
 double Pilot::evaluations() const {
   double sum = 0;
   for (const PilotPass& pass : passes)
-    sum += static_cast<double>(pass.samples.back()) * kLanes * static_cast<double>(positions.size());
+    sum += static_cast<double>(pass.samples.back()) * kLanes * static_cast<double>(pixels);
   return sum;
 }
 
 Pilot plan_pilot(const Plan& plan, std::size_t scene, const SamplerCatalogue& samplers) {
   const PlannedScene& planned = plan.scenes[scene];
   Pilot pilot;
-  pilot.positions = choose_positions(planned);
+  pilot.pixels = std::min(kMostPixels, sampled_positions(planned).size());
   for (const Pass& pass : plan.passes) {
     if (pass.scene != scene) continue;
     PilotPass wanted = {pass.precision, pass.sampler, pass.allocation, pass.estimators, pass.samples, 0, ""};
@@ -124,10 +116,43 @@ Pilot plan_pilot(const Plan& plan, std::size_t scene, const SamplerCatalogue& sa
   return pilot;
 }
 
-ExpectedError run_pilot(const Plan& plan, std::size_t scene, const Pilot& pilot, const SamplerCatalogue& samplers,
-                        int threads, bool quiet) {
+std::vector<PilotPixel> choose_pilot_pixels(const PlannedScene& scene, std::span<const double> sizes) {
+  const std::vector<std::size_t> sampled = sampled_positions(scene);
+  const auto all = static_cast<double>(scene.pixels.size());
+  std::vector<PilotPixel> pixels;
+  if (sampled.size() <= kMostPixels) {
+    for (const std::size_t position : sampled) pixels.push_back({position, 1 / all});
+    return pixels;
+  }
+  double total = 0;
+  for (const std::size_t position : sampled) total += sizes[position];
+  const bool uniform = !std::isfinite(total) || total <= 0;
+  const auto probability = [&](std::size_t position) {
+    const double even = 1 / static_cast<double>(sampled.size());
+    return uniform ? even : 0.5 * even + 0.5 * sizes[position] / total;
+  };
+  const std::uint32_t word = random_word(stream_key(0, "pixels", "pilot"), Draw::kHigh, 0, 0, 0, 0);
+  const double start = (word + 0.5) * 0x1p-32;
+  double sum = 0,
+         next = start;  // in steps of 1/64; the last place of the sum may fall short of 1, but start is below it
+  for (const std::size_t position : sampled) {
+    const double share = probability(position);
+    sum += share * kMostPixels;
+    int hits = 0;
+    for (; next < sum; next += 1) ++hits;
+    if (hits > 0) pixels.push_back({position, hits / (static_cast<double>(kMostPixels) * share * all)});
+  }
+  return pixels;
+}
+
+ExpectedError run_pilot(const Plan& plan, std::size_t scene, const Pilot& pilot, std::span<const double> variances,
+                        const SamplerCatalogue& samplers, int threads, bool quiet) {
   const PlannedScene& planned = plan.scenes[scene];
-  const std::size_t pixels = pilot.positions.size();
+  const auto channels = static_cast<std::size_t>(planned.source->channels());
+  std::vector<double> sizes(planned.pixels.size());
+  for (std::size_t i = 0; i < variances.size(); ++i) sizes[i / channels] += variances[i];
+  const std::vector<PilotPixel> chosen = choose_pilot_pixels(planned, sizes);
+  const std::size_t pixels = chosen.size();
   ExpectedError smallest;
   if (pixels == 0) return smallest;
   Progress progress(planned.name + ": pilot", pilot.evaluations(), quiet);
@@ -140,28 +165,28 @@ ExpectedError run_pilot(const Plan& plan, std::size_t scene, const Pilot& pilot,
           if (interrupted()) stop = true;
           if (stop) return;
           const PilotPass& pass = pilot.passes[index / pixels];
-          const int pixel = planned.pixels[pilot.positions[index % pixels]];
+          const int pixel = planned.pixels[chosen[index % pixels].position];
           spreads[index] = pass.precision == Precision::kF32 ? measure<float>(planned, pass, pixel, samplers)
                                                              : measure<double>(planned, pass, pixel, samplers);
           progress.advance(static_cast<double>(pass.samples.back()) * kLanes);
         },
         tbb::simple_partitioner());
   });
-  if (stop) fail(ExitCode::kInterrupted, "interrupted before the references were rendered; run again to start anew");
+  if (stop) fail(ExitCode::kInterrupted, "interrupted while a pilot ran; run the same command again to go on");
   progress.finish();
 
-  const double integrals = static_cast<double>(pixels) * planned.source->channels();
   for (std::size_t p = 0; p < pilot.passes.size(); ++p) {
     const PilotPass& pass = pilot.passes[p];
     for (std::size_t cell = 0; cell < pass.estimators.size() * pass.samples.size(); ++cell) {
       Spread sum;  // in the order of pixels, so the bits depend on the plan alone
       for (std::size_t i = 0; i < pixels; ++i) {
-        sum.variance += spreads[p * pixels + i][cell].variance;
-        sum.square += spreads[p * pixels + i][cell].square;
+        const double weight = chosen[i].weight / static_cast<double>(channels);
+        sum.variance += weight * spreads[p * pixels + i][cell].variance;
+        sum.square += weight * spreads[p * pixels + i][cell].square;
       }
       ++smallest.cells;
-      const double unit = pass.precision == Precision::kF32 ? 0x1p-24 : 0x1p-53, mse = sum.variance / integrals;
-      const bool measurable = std::isfinite(mse) && mse > 100 * unit * unit * sum.square / integrals;
+      const double unit = pass.precision == Precision::kF32 ? 0x1p-24 : 0x1p-53, mse = sum.variance;
+      const bool measurable = std::isfinite(mse) && mse > 100 * unit * unit * sum.square;
       smallest.without_error += measurable ? 0 : 1;
       if (!measurable || (smallest.mse > 0 && mse >= smallest.mse)) continue;
       smallest.mse = mse;

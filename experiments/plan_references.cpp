@@ -36,19 +36,18 @@ std::vector<std::string> remarks(const Pilot& pilot) {
   return all;
 }
 
-// Asks for what the pilot expects; tells what it found.
-void aim(ReferenceGoal& goal, const Plan& plan, std::size_t scene, const SamplerCatalogue& samplers,
-         const ReferenceOptions& options) {
-  const Pilot pilot = plan_pilot(plan, scene, samplers);
-  const ExpectedError expected = run_pilot(plan, scene, pilot, samplers, options.threads, options.quiet);
-  goal.positions = pilot.positions;
-  goal.most_variance = reference_share(plan, scene) * expected.mse;
-  goal.asked_by = expected.cell;
-  if (options.quiet) return;
+// What the pilot allows; tells what it found.
+AllowedVariance allowed_variance(const Plan& plan, std::size_t scene, std::span<const double> variances,
+                                 const SamplerCatalogue& samplers, const ReferenceOptions& options) {
+  const ExpectedError expected =
+      run_pilot(plan, scene, plan_pilot(plan, scene, samplers), variances, samplers, options.threads, options.quiet);
+  const double share = reference_share(plan, scene);
+  const AllowedVariance allowed = {share * expected.mse, expected.cell};
+  if (options.quiet) return allowed;
   const std::string& name = plan.scenes[scene].name;
   if (expected.mse > 0) {
-    message("{}: its reference is asked for a variance of {:.3g}, {} of the smallest error expected ({})\n", name,
-            goal.most_variance, percent(reference_share(plan, scene)), expected.cell);
+    message("{}: its reference may have a variance of {:.3g}, {} of the smallest error expected ({})\n", name,
+            allowed.most, percent(share), expected.cell);
   } else {
     message("{}: the pilot met no error, so nothing is asked of its reference\n", name);
   }
@@ -56,6 +55,7 @@ void aim(ReferenceGoal& goal, const Plan& plan, std::size_t scene, const Sampler
     message("{}: {} of {} cells showed no error above rounding and had no say in that\n", name, expected.without_error,
             expected.cells);
   }
+  return allowed;
 }
 
 }  // namespace
@@ -85,7 +85,9 @@ std::vector<Reference> make_references(const Plan& plan, const SamplerCatalogue&
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
     const PlannedScene& scene = plan.scenes[s];
     ReferenceGoal goal = reference_goal(plan, s);
-    if (!has_closed_form(*scene.source, scene.pixels)) aim(goal, plan, s, samplers, options);
+    goal.allowed = [&](std::span<const double> variances) {
+      return allowed_variance(plan, s, variances, samplers, options);
+    };
     references.push_back(make_reference(*scene.source, scene.name, scene.pixels, goal, options, samplers));
   }
   return references;
@@ -99,13 +101,13 @@ std::vector<std::string> describe_references(const Plan& plan, const SamplerCata
     const ReferenceGoal goal = reference_goal(plan, s);
     const Pilot pilot = plan_pilot(plan, s, samplers);
     std::string line = fmt::format("{}: 16 replicates of N = {} or more", scene.name, goal.samples);
-    if (!pilot.passes.empty() && !pilot.positions.empty()) {
+    if (!pilot.passes.empty() && pilot.pixels > 0) {
       line += fmt::format(
           ", until their variance is at most {} of the smallest error of a pilot: {} {} x {} replicates of {} {}, "
           "{:.3g} "
           "integrand evaluations",
-          percent(reference_share(plan, s)), pilot.positions.size(), pilot.positions.size() == 1 ? "pixel" : "pixels",
-          kPilotReplicates, pilot.passes.size(), pilot.passes.size() == 1 ? "pass" : "passes", pilot.evaluations());
+          percent(reference_share(plan, s)), pilot.pixels, pilot.pixels == 1 ? "pixel" : "pixels", kPilotReplicates,
+          pilot.passes.size(), pilot.passes.size() == 1 ? "pass" : "passes", pilot.evaluations());
     }
     for (const std::string& remark : remarks(pilot)) line += "; " + remark;
     lines.push_back(std::move(line));

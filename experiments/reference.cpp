@@ -22,15 +22,10 @@ double mean_variance(const std::vector<Moments>& moments) {
   return sum.value() / static_cast<double>(moments.size());
 }
 
-// Over the pixels at some positions; all where there are none.
-double mean_variance(const std::vector<Moments>& moments, const std::vector<std::size_t>& positions,
-                     std::size_t channels) {
-  if (positions.empty()) return mean_variance(moments);
-  CompensatedSum sum;
-  for (const std::size_t position : positions) {
-    for (std::size_t c = 0; c < channels; ++c) sum.add(moments[position * channels + c].variance());
-  }
-  return sum.value() / static_cast<double>(positions.size() * channels);
+std::vector<double> variances(const ReferenceState& state) {
+  std::vector<double> each;
+  for (const Moments& m : state.moments) each.push_back(m.variance());
+  return each;
 }
 
 // √ of the mean over integrals of (standard error / value)²; integrals without spread are exact.
@@ -73,15 +68,18 @@ struct Outcome {
 // Variances fall like one over the replicates, so how many are needed is known to a factor after the first.
 constexpr double kPlainlyTooMany = 4;
 
-Outcome render_until(ReferenceRenderer& renderer, ReferenceState& state, const ReferenceGoal& goal, bool may_grow) {
+Outcome render_until(ReferenceRenderer& renderer, ReferenceState& state, const ReferenceGoal& goal, bool may_grow,
+                     std::optional<AllowedVariance>& allowed) {
   const std::int64_t most = may_grow ? std::min(kFewReplicates, goal.most_replicates) : goal.most_replicates;
   for (std::int64_t replicates = kFirstReplicates;; replicates *= 2) {
     renderer.extend(state, replicates);
     const auto n = static_cast<double>(replicates);
-    if (!std::isfinite(mean_variance(state.moments))) return {true, 0, 0, 0};  // the cells will be invalid
+    const double variance = mean_variance(state.moments);
+    if (!std::isfinite(variance)) return {true, 0, 0, 0};  // more would not mend it; the cells will be invalid
+    if (!allowed) allowed = goal.allowed ? goal.allowed(variances(state)) : AllowedVariance{};
     Outcome at = {true, 0, relative_error(state.moments), 0};
-    if (goal.most_variance > 0) {
-      at.excess = mean_variance(state.moments, goal.positions, renderer.channels()) / n / goal.most_variance;
+    if (allowed->most > 0) {
+      at.excess = variance / n / allowed->most;
       at.reached = at.excess <= 1;
       at.needed = n * at.excess;
     }
@@ -126,7 +124,7 @@ Reference finished(const ReferenceRenderer& renderer, const ReferenceState& stat
 }
 
 [[noreturn]] void refuse(const std::string& name, const ReferenceRenderer& renderer, const ReferenceState& state,
-                         const ReferenceGoal& goal, const Outcome& outcome) {
+                         const ReferenceGoal& goal, const AllowedVariance& allowed, const Outcome& outcome) {
   const std::string spent = fmt::format("scene '{}': after {} replicates of N = {} the reference's", name,
                                         state.replicates(), renderer.samples());
   const std::string needed =
@@ -135,7 +133,7 @@ Reference finished(const ReferenceRenderer& renderer, const ReferenceState& stat
     fail(ExitCode::kBadInput,
          "{} variance is still {:.3g} times what the smallest error to be measured allows, that of {}: {}; measure "
          "smaller N, or leave that one out",
-         spent, outcome.excess, goal.asked_by, needed);
+         spent, outcome.excess, allowed.asked_by, needed);
   }
   fail(
       ExitCode::kBadInput,
@@ -160,14 +158,15 @@ bool has_closed_form(const IntegralSource& source, const std::vector<int>& pixel
 Reference make_reference(const IntegralSource& source, const std::string& name, const std::vector<int>& pixels,
                          const ReferenceGoal& goal, const ReferenceOptions& options, const SamplerCatalogue& samplers) {
   if (has_closed_form(source, pixels)) return closed_form_reference(source, pixels);
+  std::optional<AllowedVariance> allowed;
   for (ReferenceGoal at = goal;; at.samples *= kMoreSamples) {
     ReferenceRenderer renderer(source, name, pixels, at, options, samplers);
     // Scrambled points gain more from N than from replicates, so N grows as long as it may.
     const bool may_grow = at.samples * kMoreSamples <= goal.most_samples;
     ReferenceState state;
-    const Outcome outcome = render_until(renderer, state, at, may_grow);
+    const Outcome outcome = render_until(renderer, state, at, may_grow, allowed);
     if (outcome.reached) return finished(renderer, state);
-    if (!may_grow) refuse(name, renderer, state, at, outcome);
+    if (!may_grow) refuse(name, renderer, state, at, *allowed, outcome);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,14 +35,18 @@ struct Reference {
   std::optional<std::size_t> first_nonfinite(int channels) const;
 };
 
+/// The most that a reference's mean variance V̄ may be, and for whose sake: a cell, in the refusal's message.
+struct AllowedVariance {
+  double most = 0;  ///< 0: anything
+  std::string asked_by;
+};
+
 /// When a rendered reference is good enough.
 struct ReferenceGoal {
   std::uint64_t samples = 4096;  ///< N of each replicate
-  /// The mean variance over the integrals of `positions` (among the chosen pixels; empty: all of them) at most this; 0
-  /// for no such goal.
-  double most_variance = 0;
-  std::vector<std::size_t> positions;
-  std::string asked_by;  ///< whose error `most_variance` is for: a cell, in the refusal's message
+  /// Asked once, when the first 16 replicates stand, with the variance over them of every integral. Empty: no such
+  /// goal.
+  std::function<AllowedVariance(std::span<const double> variances)> allowed = nullptr;
   /// Root mean square of the pixels' relative standard errors at most this; 0 for no such goal.
   double relative_error = 0;
   std::int64_t most_replicates = 1 << 14;

@@ -209,8 +209,9 @@ TEST(Plan, IsDescribedInLines) {
                              {"samplers", "halton-owen"},
                              {"samples", "4:16"},
                              {"replicates", "8"}});
-  const Plan plan = make_plan(spec, Catalogue::built_in());
-  const std::string text = describe_plan(spec, plan);
+  const Catalogue catalogue = Catalogue::built_in();
+  const Plan plan = make_plan(spec, catalogue);
+  const std::string text = describe_plan(spec, plan, catalogue);
   EXPECT_THAT(text, HasSubstr("look: 3 cells from 1 pass in 1 unit of work, 128 integrand evaluations\n"));
   for (const auto& skip : plan.skips) EXPECT_THAT(text, HasSubstr("  " + skip + "\n"));
 }

@@ -8,7 +8,10 @@
 #include "analysis/intervals.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/random.h"
+#include "estimators/pass_evaluator.h"
 #include "scenes/function_source.h"
+#include "tests/experiments/run_spec.h"
 #include "tests/experiments/temporary_folder.h"
 
 namespace halfslope {
@@ -38,6 +41,15 @@ std::string refusal(const IntegralSource& source, const ReferenceGoal& goal) {
   }
   ADD_FAILURE() << "the reference could be made";
   return "";
+}
+
+/// Allows a mean variance that is this share of that of one replicate, as the first 16 show it.
+std::function<AllowedVariance(std::span<const double>)> share_of_first(double share) {
+  return [share](std::span<const double> variances) {
+    double sum = 0;
+    for (const double v : variances) sum += v;
+    return AllowedVariance{share * sum / static_cast<double>(variances.size()), "somebody"};
+  };
 }
 
 /// A floor at z = 0 of albedo `rho` under a sphere of `radius` and radiance 7 at height 2, seen where the angle between
@@ -77,7 +89,8 @@ class Secretive final : public IntegralSource {
 };
 
 bool same(const Reference& a, const Reference& b) {
-  return a.value == b.value && a.variance == b.variance && a.mean == b.mean && a.mean_se == b.mean_se &&
+  return a.value == b.value && a.variance == b.variance && a.half_a == b.half_a && a.half_b == b.half_b &&
+         a.mse_noise == b.mse_noise && a.relmse_noise == b.relmse_noise && a.mean == b.mean && a.mean_se == b.mean_se &&
          a.mean_variance == b.mean_variance && a.samples == b.samples && a.replicates == b.replicates &&
          a.origin == b.origin;
 }
@@ -113,8 +126,7 @@ TEST(Reference, ARenderedOneIsWithinItsErrorOfTheClosedForm) {
   ASSERT_EQ(source->channels(), 1);
   const Reference known = render(*source, {});
   EXPECT_EQ(known.origin, "closed form");
-  const Reference reference =
-      render(Secretive(*source), {.samples = 4096, .compare_samples = 1024, .relative_error = 1e-4});
+  const Reference reference = render(Secretive(*source), {.samples = 4096, .relative_error = 1e-4});
   EXPECT_EQ(reference.samples, 4096u);
   // Each of three pixels fails with a probability of 3e-7.
   const double t = t_quantile(1 - 1.5e-7, static_cast<double>(reference.replicates - 1));
@@ -134,7 +146,7 @@ TEST(Reference, ARenderedOneIsWithinItsErrorOfTheClosedForm) {
 
 TEST(Reference, IsExtendedUntilTheGoalIsMetAndNoFurther) {
   const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
-  ReferenceGoal goal = {.samples = 64, .compare_samples = 16};
+  ReferenceGoal goal = {.samples = 64};
   const Reference least = render(source, goal);
   EXPECT_EQ(least.replicates, 16);
   const double first = std::sqrt(least.variance[0]) / std::fabs(least.value[0]);
@@ -149,9 +161,93 @@ TEST(Reference, IsExtendedUntilTheGoalIsMetAndNoFurther) {
   EXPECT_NEAR(more.value[0], (1 - std::cos(9.0)) / 9 + 0.5, t * std::sqrt(more.variance[0]));
 }
 
+TEST(Reference, TheMostVarianceIsAskedForOnceAndReached) {
+  const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
+  int asked = 0;
+  double most = 0;
+  ReferenceGoal goal = {.samples = 64};
+  goal.allowed = [&](std::span<const double> variances) {
+    ++asked;
+    EXPECT_EQ(variances.size(), 1u);
+    most = variances[0] / 3000;
+    return AllowedVariance{most, "somebody"};
+  };
+  const Reference more = render(source, goal);
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(more.samples, 64u);
+  EXPECT_GT(more.replicates, 256);
+  EXPECT_LE(more.mean_variance, most);
+  goal.most_samples = 4096;  // now it may grow, which asks no more
+  const Reference grown = render(source, goal);
+  EXPECT_EQ(asked, 2);
+  EXPECT_GT(grown.samples, 64u);
+  EXPECT_LE(grown.replicates, 256);
+  EXPECT_LE(grown.mean_variance, most);
+}
+
+// Every key of a run is a key for some seed, since the hash of the seed is a bijection: references must be kept apart
+// by more than their key. Here the run has the reference's own.
+TEST(Reference, SharesNoPointsWithARunOfAnySeed) {
+  constexpr int kPixels = 400;
+  const auto first = [](std::span<const double> x, int) { return x[0]; };
+  const FunctionSource source("first", 1, first, std::nullopt, 20, 20);
+  const Reference reference = render(source, {.samples = 8});
+  ASSERT_EQ(reference.replicates, 16);
+  const StreamKey key = stream_key(0, "halton-owen", "reference");
+  PassEvaluator<double> evaluator(SamplerCatalogue::built_in().make("halton-owen"), source.techniques(), {{0}, {1}},
+                                  {{HeuristicKind::kSingle, 0}}, {8}, 1);
+  // Correlation, over pixels, of the errors of the reference with those of a run's first 16 replicates.
+  double products = 0, squares = 0, reference_squares = 0;
+  for (int p = 0; p < kPixels; ++p) {
+    const PixelIntegral pixel = source.pixel(p);
+    evaluator.run(*pixel.integral, key, static_cast<std::uint32_t>(p), 0);
+    double mean = 0;
+    for (int l = 0; l < 16; ++l) mean += evaluator.estimates(0, 0, 0)[l] / 16;
+    const double own = reference.value[static_cast<std::size_t>(p)] - 0.5;
+    EXPECT_NE(mean - 0.5, own);
+    products += (mean - 0.5) * own;
+    squares += (mean - 0.5) * (mean - 0.5);
+    reference_squares += own * own;
+  }
+  // Of independent errors √400 · correlation is about normal: below 5 in all but 6e-7.
+  EXPECT_LT(std::fabs(products / std::sqrt(squares * reference_squares)), 5 / std::sqrt(400.0));
+  // What a reference draws, the same evaluator draws from its first replicate on: so the numbers above are those of
+  // another replicate, and no replicate of a run is as high.
+  const PixelIntegral pixel = source.pixel(7);
+  evaluator.run(*pixel.integral, key, 7, kFirstReferenceReplicate);
+  double mean = 0;
+  for (int l = 0; l < 16; ++l) mean += evaluator.estimates(0, 0, 0)[l] / 16;
+  EXPECT_NEAR(mean, reference.value[7], 1e-15);
+  Spec spec = spec_of({{"scene", "mis-toy"}, {"samplers", "halton-owen"}, {"samples", "4"}});
+  apply_flag(spec, "replicates", std::to_string(kFirstReferenceReplicate));
+  EXPECT_EQ(spec.replicates, std::int64_t{kFirstReferenceReplicate});
+  EXPECT_THROW(apply_flag(spec, "replicates", std::to_string(std::int64_t{kFirstReferenceReplicate} + 1)), Error);
+}
+
+// Two halves, each of half the replicates: their mean is the value, and over pixels their difference has four times the
+// variance of the value. 400 pixels give the ratio with a relative standard error of √(2/400 (1 + 1/15)) = 7.3 %; 0.37
+// is five of them.
+TEST(Reference, ItsHalvesAreIndependent) {
+  const FunctionSource source(
+      "many", 2, [](std::span<const double> x, int) { return std::exp(x[0] + 2 * x[1]); }, std::nullopt, 20, 20);
+  for (const double share : {1.0, 1.0 / 40}) {
+    const Reference reference = render(source, {.samples = 64, .allowed = share_of_first(share)});
+    EXPECT_EQ(reference.replicates, share == 1 ? 16 : 64);
+    double squares = 0, products = 0;
+    for (std::size_t p = 0; p < 400; ++p) {
+      const double exact = (std::exp(1.0) - 1) * (std::exp(2.0) - 1) / 2;
+      EXPECT_NEAR((reference.half_a[p] + reference.half_b[p]) / 2, reference.value[p], 1e-14 * exact);
+      squares += std::pow(reference.half_a[p] - reference.half_b[p], 2) / 400;
+      products += (reference.half_a[p] - exact) * (reference.half_b[p] - exact) / 400;
+    }
+    EXPECT_NEAR(squares / (4 * reference.mean_variance), 1, 0.37);
+    EXPECT_LT(std::fabs(products), 5 * 2 * reference.mean_variance / std::sqrt(400.0));
+  }
+}
+
 TEST(Reference, WhereItMayNGrowsBeforeTheReplicatesDo) {
   const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
-  ReferenceGoal goal = {.samples = 64, .compare_samples = 16, .relative_error = 1e-4, .most_samples = 32768};
+  ReferenceGoal goal = {.samples = 64, .relative_error = 1e-4, .most_samples = 32768};
   const Reference grown = render(source, goal);
   EXPECT_GT(grown.samples, 64u);
   EXPECT_LE(grown.samples, 32768u);
@@ -168,22 +264,22 @@ TEST(Reference, WhereItMayNGrowsBeforeTheReplicatesDo) {
 
 TEST(Reference, TooFewReplicatesAreAnErrorThatSaysWhatToDo) {
   const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
-  const std::string relative =
-      refusal(source, {.samples = 64, .compare_samples = 16, .relative_error = 1e-9, .most_replicates = 64});
+  const std::string relative = refusal(source, {.samples = 64, .relative_error = 1e-3, .most_replicates = 64});
   EXPECT_THAT(relative,
               StartsWith("scene 'scene': after 64 replicates of N = 64 the reference's relative error is still "));
-  EXPECT_THAT(relative, HasSubstr("1e-09 was asked for; give it more --samples or --max-replicates"));
-  const std::string share =
-      refusal(source, {.samples = 64, .compare_samples = 16, .error_share = 1e-9, .most_replicates = 64});
-  EXPECT_THAT(share, HasSubstr("times what errors at N = 16 allow; measure at smaller N"));
-  EXPECT_THAT(refusal(source, {.samples = std::uint64_t{1} << 40, .compare_samples = 16}),
-              HasSubstr("a reference takes at most N = "));
+  EXPECT_THAT(relative, HasSubstr("0.001 was asked for: about "));
+  EXPECT_THAT(relative, HasSubstr("64 are the most; give it more --samples or --max-replicates"));
+  const std::string share = refusal(source, {.samples = 64, .allowed = share_of_first(1e-9), .most_replicates = 64});
+  EXPECT_THAT(share, StartsWith("scene 'scene': after 16 replicates"));  // where it plainly cannot be, at once
+  EXPECT_THAT(share, HasSubstr("times what the smallest error to be measured allows, that of somebody: about 1e+09 "));
+  EXPECT_THAT(share, HasSubstr("measure smaller N, or leave that one out"));
+  EXPECT_THAT(refusal(source, {.samples = std::uint64_t{1} << 40}), HasSubstr("a reference takes at most N = "));
 }
 
 TEST(Reference, ThreadsAndCachesChangeNothing) {
   const TemporaryFolder folder;
   const auto source = Catalogue::built_in().make_scene("veach-mis", std::array{20, 14});  // more than 256 pixels
-  const ReferenceGoal goal = {.samples = 64, .compare_samples = 16, .error_share = 0.002};
+  const ReferenceGoal goal = {.samples = 64, .allowed = share_of_first(1.0 / 40)};
   const Reference plain = render(*source, goal, {}, 1);
   EXPECT_GT(plain.replicates, 16);  // so that one is extended
   EXPECT_TRUE(same(render(*source, goal, {}, 3), plain));
@@ -202,7 +298,7 @@ TEST(Reference, ThreadsAndCachesChangeNothing) {
 TEST(Reference, ADamagedCacheIsRenderedAgain) {
   const TemporaryFolder folder;
   const FunctionSource source("wave", 2, [](std::span<const double> x, int) { return std::sin(9 * x[0]) + x[1]; });
-  const ReferenceGoal goal = {.samples = 64, .compare_samples = 16};
+  const ReferenceGoal goal = {.samples = 64};
   const Reference plain = render(source, goal, folder.path());
   const auto file = std::filesystem::directory_iterator(folder.path())->path();
   const std::string bytes = read_file(file);
@@ -223,7 +319,7 @@ TEST(Reference, TheCacheKnowsItsScenesApart) {
   const TemporaryFolder folder;
   const auto value = [&](const char* fingerprint, double c, std::uint64_t samples) {
     const FunctionSource source(fingerprint, 1, [c](std::span<const double>, int) { return c; });
-    return render(source, {.samples = samples, .compare_samples = 16}, folder.path()).value[0];
+    return render(source, {.samples = samples}, folder.path()).value[0];
   };
   EXPECT_EQ(value("a", 1, 64), 1);
   EXPECT_EQ(value("b", 2, 64), 2);
@@ -237,7 +333,7 @@ TEST(Reference, ItsStandardErrorsCover) {
   // nearly normal here.)
   const FunctionSource source(
       "many", 2, [](std::span<const double> x, int) { return std::exp(x[0] + 2 * x[1]); }, std::nullopt, 20, 20);
-  const Reference reference = render(source, {.samples = 256, .compare_samples = 16});
+  const Reference reference = render(source, {.samples = 256});
   ASSERT_EQ(reference.replicates, 16);
   const double exact = (std::exp(1.0) - 1) * (std::exp(2.0) - 1) / 2;
   int covered = 0;
