@@ -174,8 +174,9 @@ TEST(PlanReferences, AreDescribedAndNothingIsRendered) {
   EXPECT_THAT(lines[0], HasSubstr("; halton-owen stands in for halton"));
 }
 
-// A run: every cell's measured error is at least about a hundred times the reference's variance (twice for the noise of
-// a pilot of 16 replicates, whose smallest is rather too small), and a cell that errs by rounding alone is no obstacle.
+// A run: the reference's variance is 1 % of every cell's measured error, or twice that, since the pilot's smallest of
+// many estimates errs. What a deterministic sampler will do nobody can tell; it is not marked as limited by the
+// reference.
 TEST(PlanReferences, OfARunAreGoodEnoughForItsBestCell) {
   const RunScope scope;
   const auto outcome = scope.run({{"scene", "veach-mis"},
@@ -184,7 +185,8 @@ TEST(PlanReferences, OfARunAreGoodEnoughForItsBestCell) {
                                   {"samples", "16:256"},
                                   {"replicates", "16"}});
   for (const CellResult& cell : outcome.results.cells) {
-    EXPECT_LE(cell.statistics.reference_mse, 0.02 * cell.mse) << to_string(cell.name);
+    EXPECT_LE(cell.statistics.reference_mse, (cell.facts.deterministic ? 0.1 : 0.02) * cell.mse)
+        << to_string(cell.name);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +11,7 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "estimators/pass_evaluator.h"
+#include "experiments/images.h"
 #include "scenes/function_source.h"
 #include "tests/experiments/run_spec.h"
 #include "tests/experiments/temporary_folder.h"
@@ -242,6 +244,27 @@ TEST(Reference, ItsHalvesAreIndependent) {
     }
     EXPECT_NEAR(squares / (4 * reference.mean_variance), 1, 0.37);
     EXPECT_LT(std::fabs(products), 5 * 2 * reference.mean_variance / std::sqrt(400.0));
+  }
+}
+
+TEST(Reference, ItsPictureHasItsHalvesAsLayers) {
+  const FunctionSource source(
+      "many", 2, [](std::span<const double> x, int) { return std::exp(x[0] + 2 * x[1]); }, std::nullopt, 4, 2);
+  const Reference reference = render(source, {.samples = 16});
+  const ExrImage image = reference_image(source, reference);
+  const auto layer = [&](const std::string& name) {
+    const auto found = std::ranges::find(image.channels, name, &ExrImage::Channel::name);
+    EXPECT_NE(found, image.channels.end()) << name;
+    return found->values;
+  };
+  EXPECT_EQ(image.channels.size(), 12u);
+  for (const std::string c : {"R", "G", "B"}) {
+    for (std::size_t p = 0; p < 8; ++p) {
+      EXPECT_EQ(layer("half_a." + c)[p], static_cast<float>(reference.half_a[p]));
+      EXPECT_EQ(layer("half_b." + c)[p], static_cast<float>(reference.half_b[p]));
+      EXPECT_EQ(layer("variance." + c)[p], static_cast<float>(reference.variance[p]));
+      EXPECT_EQ(layer(c)[p], static_cast<float>(reference.value[p]));
+    }
   }
 }
 
