@@ -1,6 +1,7 @@
 // The status column: what a reader of a row must know before trusting its numbers.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -21,6 +22,15 @@ class Status {
  private:
   std::string text_;
 };
+
+/// Whether `status`, marks joined by ';', has this one.
+inline bool has_mark(std::string_view status, std::string_view mark) {
+  for (std::size_t begin = 0, end = 0; begin <= status.size(); begin = end + 1) {
+    end = std::min(status.find(';', begin), status.size());
+    if (status.substr(begin, end - begin) == mark) return true;
+  }
+  return false;
+}
 
 /// Fewer replicates than this, and intervals are not certified.
 inline constexpr int kCertifiedReplicates = 16;
