@@ -6,6 +6,11 @@
 #include "analysis/status.h"
 
 namespace halfslope {
+namespace {
+
+constexpr double kNormal975 = 1.959963984540054;  ///< quantile of the standard normal distribution
+
+}  // namespace
 
 std::vector<std::int64_t> replicate_schedule(std::int64_t most, int steps) {
   std::vector<std::int64_t> totals;
@@ -24,6 +29,11 @@ std::optional<double> log_half_width(const CellStatistics& cell) {
   return std::max(std::log(*cell.rmse_hi / *cell.rmse), std::log(*cell.rmse / *cell.rmse_lo));
 }
 
+std::optional<double> approximate_half_width(const Moments& mse, double reference_mse) {
+  const double half_width = kNormal975 * mse.standard_error() / (2 * (mse.mean - reference_mse));
+  return mse.mean > reference_mse && std::isfinite(half_width) ? std::optional(half_width) : std::nullopt;
+}
+
 TargetState target_state(const CellStatistics& cell, double target) {
   const auto marked = [&](std::string_view mark) { return has_mark(cell.status, mark); };
   if (cell.invalid || marked("infinite-variance") || marked("exact") || marked("deterministic"))
@@ -34,7 +44,6 @@ TargetState target_state(const CellStatistics& cell, double target) {
 }
 
 double gaussian_replicates(double target) {
-  constexpr double kNormal975 = 1.959963984540054;
   const double ratio = kNormal975 / std::log1p(target);
   return ratio * ratio / 2;
 }

@@ -21,6 +21,11 @@ std::vector<std::int64_t> replicate_schedule(std::int64_t most, int steps = 1);
 /// one of the three is.
 std::optional<double> log_half_width(const CellStatistics& cell);
 
+/// The same by the delta method, without an interval's work: z s / (2 √R (M − V̄)), z = 1.96, with M and s the mean and
+/// the standard deviation of the replicates' squared errors and V̄ the reference's variance. Enough to compare cells.
+/// Empty where M ≤ V̄ or a moment is not finite.
+std::optional<double> approximate_half_width(const Moments& mse, double reference_mse);
+
 enum class TargetState : std::uint8_t {
   kReached,  ///< the interval is narrow enough, and certified
   kOpen,     ///< not yet

@@ -37,6 +37,8 @@ std::string key_help(const std::string& key) {
       {"precision", "f32, f64 or f32,f64 (default f32)"},
       {"measures", "of the samplers' points, see `halfslope list measures`, or none (default none)"},
       {"interval", "of the RMSE: bootstrap-t, chi2, delta, bca or reciprocal-t (default bootstrap-t)"},
+      {"target", "'rmse 5%': replicates are added until every rmse is known to ±5 %, at most --replicates (4096)"},
+      {"budget", "60s, 2min or 1h: replicates are added where they narrow most, until the time is spent"},
   };
   const auto found = kHelp.find(key);
   return found == kHelp.end() ? "" : found->second;

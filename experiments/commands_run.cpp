@@ -18,6 +18,7 @@
 #include "experiments/manifest.h"
 #include "experiments/message.h"
 #include "experiments/plan_references.h"
+#include "experiments/stages.h"
 #include "experiments/tables.h"
 
 namespace halfslope {
@@ -75,6 +76,7 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
   } else {
     rows = {
         {"ok", "nothing to say against the row's numbers", "", ""},
+        {"target-missed", "the most replicates did not bring the rmse's interval within the target", "", ""},
         {"few-replicates", "below 16 replicates: the intervals are not certified", "", ""},
         {"no-spread",
          "all replicates err alike: nothing that contributes was met, or only rounding is left; no interval, no rate",
@@ -118,6 +120,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
                               {"passes", plan.passes.size()},
                               {"units", plan.units.size()},
                               {"evaluations", plan.evaluations()},
+                              {"evaluations_least", least_evaluations(plan)},
                               {"discrepancies", plan.measures.rows()},
                               {"references", describe_references(plan, catalogue.samplers)},
                               {"skipped", plan.skips}}

@@ -1,11 +1,6 @@
 #include "experiments/engine.h"
 
-#include <tbb/task_group.h>
-
-#include <atomic>
 #include <chrono>
-#include <exception>
-#include <mutex>
 
 #include "core/atomic_file.h"
 #include "core/error.h"
@@ -14,16 +9,15 @@
 #include "core/version.h"
 #include "experiments/fold.h"
 #include "experiments/images.h"
-#include "experiments/interrupt.h"
 #include "experiments/journal.h"
 #include "experiments/manifest.h"
 #include "experiments/message.h"
-#include "experiments/parallel.h"
 #include "experiments/plan_references.h"
 #include "experiments/progress.h"
 #include "experiments/run_folder.h"
+#include "experiments/runner.h"
+#include "experiments/stages.h"
 #include "experiments/tables.h"
-#include "experiments/unit.h"
 
 namespace halfslope {
 namespace {
@@ -34,73 +28,6 @@ std::string run_hash(const Spec& spec, const Plan& plan) {
   for (const std::string& fingerprint : plan.sampler_fingerprints) text += "\n" + fingerprint;
   return fmt::format("{:016x}", hash_text(text));
 }
-
-/// Takes units in order and journals them; every thread until none is left, one fails, or a signal comes.
-class Runner {
- public:
-  Runner(const Plan& plan, std::span<const Reference> references, const Catalogue& catalogue, Journal& journal,
-         bool quiet, const std::string& label)
-      : plan_(plan),
-        references_(references),
-        catalogue_(catalogue),
-        journal_(journal),
-        progress_(label, remaining(), quiet) {}
-
-  void run(int threads) {
-    with_threads(threads, [&](int count) {
-      tbb::task_group group;
-      for (int t = 0; t < count; ++t) group.run([&] { work(); });
-      group.wait();
-    });
-    if (failure_) std::rethrow_exception(failure_);
-    if (interrupted()) {
-      fail(ExitCode::kInterrupted, "interrupted; {} of {} units are done: run the same command again to go on",
-           journal_.size(), plan_.units.size());
-    }
-    progress_.finish();
-  }
-
- private:
-  double remaining() const {
-    double sum = 0;
-    for (std::size_t u = 0; u < plan_.units.size(); ++u) {
-      const Unit& unit = plan_.units[u];
-      if (!journal_.has(u))
-        sum += static_cast<double>(plan_.passes[unit.pass].evaluations()) * static_cast<double>(unit.pixel_count) *
-               static_cast<double>(unit.replicate_count);
-    }
-    return sum;
-  }
-
-  void work() {
-    try {
-      UnitEvaluator evaluator(plan_, references_, catalogue_.samplers);
-      for (std::size_t u = next_++; u < plan_.units.size() && !stop(); u = next_++) {
-        if (journal_.has(u)) continue;
-        const auto parts = evaluator.evaluate(plan_.units[u], [&](double samples) {
-          progress_.advance(samples);
-          return !stop();
-        });
-        if (!parts.empty()) journal_.append(u, encode_parts(parts));
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!failure_) failure_ = std::current_exception();
-      failed_ = true;
-    }
-  }
-  bool stop() const { return failed_ || interrupted(); }
-
-  const Plan& plan_;
-  std::span<const Reference> references_;
-  const Catalogue& catalogue_;
-  Journal& journal_;
-  Progress progress_;
-  std::atomic<std::size_t> next_ = 0;
-  std::atomic<bool> failed_ = false;
-  std::mutex mutex_;
-  std::exception_ptr failure_;
-};
 
 }  // namespace
 
@@ -122,10 +49,15 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   }
   const std::vector<Reference> references =
       make_references(plan, catalogue.samplers, {options.threads, options.quiet, default_cache()});
-  if (journal.size() < plan.units.size()) {
-    Runner(plan, references, catalogue, journal, options.quiet, spec.name).run(options.threads);
-  } else if (!options.quiet) {
-    message("{}: everything was measured already; the tables are written anew\n", spec.name);
+  {
+    Progress progress(spec.name, plan.evaluations(), options.quiet);
+    Runner runner(plan, references, catalogue.samplers, journal, progress, options.threads);
+    set_replicates(outcome.plan, measure(spec, plan, references, runner));
+    if (progress.done() > 0) {
+      progress.finish();
+    } else if (!options.quiet) {
+      message("{}: everything was measured already; the tables are written anew\n", spec.name);
+    }
   }
   journal.sync();
   AtomicFile replicates_file(folder.path("replicates.csv"));
@@ -141,6 +73,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   outcome.results = collect_results(plan, references, journal, catalogue.samplers, options.threads, visitor);
   replicates_file.commit();
+  if (spec.target) mark_missed(outcome.results, *spec.target);
   for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.invalid ? 1 : 0;
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) write_file_atomically(folder.path(name), text);
@@ -176,8 +109,8 @@ void note_finished_work(Plan& plan, const Spec& spec, const Catalogue& catalogue
   try {
     const RunFolder folder(out);
     const Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, false);
-    plan.skips.push_back(fmt::format("{} of {} units of work are in {}: not measured again", journal.size(),
-                                     plan.units.size(), (out / "journal").string()));
+    plan.skips.push_back(fmt::format("{} of {} units of work are in {}: not measured again",
+                                     finished_units(plan, journal), plan.units.size(), (out / "journal").string()));
   } catch (const Error& error) {
     // Another experiment's journal leaves nothing to skip; a folder that is busy cannot be looked into.
     if (error.code() != ExitCode::kBadInput) plan.skips.push_back(error.what());
@@ -188,9 +121,12 @@ std::string describe_plan(const Spec& spec, const Plan& plan, const Catalogue& c
   const auto count = [](auto n, const char* one, const char* many) {
     return fmt::format("{} {}", n, n == 1 ? one : many);
   };
-  std::string text = fmt::format("{}: {} from {} in {} of work, {:.3g} integrand evaluations\n", spec.name,
-                                 count(plan.cells.size(), "cell", "cells"), count(plan.passes.size(), "pass", "passes"),
-                                 count(plan.units.size(), "unit", "units"), plan.evaluations());
+  std::string text =
+      fmt::format("{}: {} from {} in {}{} of work, {}{:.3g} integrand evaluations\n", spec.name,
+                  count(plan.cells.size(), "cell", "cells"), count(plan.passes.size(), "pass", "passes"),
+                  spec.in_stages() ? "at most " : "", count(plan.units.size(), "unit", "units"),
+                  spec.in_stages() ? fmt::format("{:.3g} to ", least_evaluations(plan)) : "", plan.evaluations());
+  text += describe_stopping(spec, plan);
   for (const Pass& pass : plan.passes) {
     const PlannedScene& scene = plan.scenes[pass.scene];
     std::vector<std::string> names;
@@ -200,7 +136,9 @@ std::string describe_plan(const Spec& spec, const Plan& plan, const Catalogue& c
                         pass.sampler, fmt::join(names, " + "), pass.samples.front(),
                         pass.samples.size() > 1 ? fmt::format(" … {}", pass.samples.back()) : "",
                         count(scene.pixels.size(), "pixel", "pixels"),
-                        count(pass.replicates, "replicate", "replicates"), count(dims, "dimension", "dimensions"));
+                        (pass.stages.size() > 1 ? fmt::format("{} to ", pass.stages.front()) : "") +
+                            count(pass.replicates, "replicate", "replicates"),
+                        count(dims, "dimension", "dimensions"));
   }
   text += describe_measures(plan.measures);
   const auto references = describe_references(plan, catalogue.samplers);

@@ -41,19 +41,18 @@ struct Batch {
 
 }  // namespace
 
-FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& reference, const Journal& journal) {
+FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& reference, const Journal& journal,
+                     std::int64_t replicates) {
   const Pass& pass = plan.passes[cell.pass];
   const PlannedScene& scene = plan.scenes[pass.scene];
   const auto channels = static_cast<std::size_t>(scene.source->channels());
   const std::size_t part_index = cell.heuristic * pass.samples.size() + cell.n;
-  const std::size_t tiles = (scene.pixels.size() + static_cast<std::size_t>(pass.tile_pixels) - 1) /
-                            static_cast<std::size_t>(pass.tile_pixels);
-  const bool keep = pass.replicates <= kMostKept;
+  const bool keep = replicates <= kMostKept;
   const bool several_regions = scene.source->regions().size() > 1;
 
   FoldedCell folded;
   CellData& data = folded.data;
-  data.replicates = pass.replicates;
+  data.replicates = replicates;
   data.integrals = static_cast<std::int64_t>(scene.pixels.size() * channels);
   data.reference_mean = reference.mean;
   data.reference_se = reference.mean_se;
@@ -75,11 +74,11 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   CompensatedSum abs_error, m2, m2_squared, m4;
   std::vector<double> worst;
   folded.first_bad_replicate = std::numeric_limits<std::uint64_t>::max();
-  for (std::int64_t b = 0; b < pass.batches(); ++b) {
-    const Unit& first = plan.units[pass.first_unit + static_cast<std::uint64_t>(b) * tiles];
+  for (std::size_t b = 0; b < pass.batches_within(replicates); ++b) {
+    const Unit& first = plan.units[pass.first_unit + b * pass.tiles];
     Batch batch(static_cast<std::size_t>(first.replicate_count));
-    for (std::size_t t = 0; t < tiles; ++t) {
-      const std::uint64_t unit = pass.first_unit + static_cast<std::uint64_t>(b) * tiles + t;
+    for (std::size_t t = 0; t < pass.tiles; ++t) {
+      const std::uint64_t unit = pass.first_unit + b * pass.tiles + t;
       const CellPart part = decode_part(
           part_index, [&](std::uint64_t offset, std::uint64_t size) { return journal.read(unit, offset, size); });
       batch.add(part);
@@ -145,7 +144,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   CompensatedSum worst_sum;
   for (const double squared : worst) worst_sum.add(squared);
   data.worst_squared_error = worst_sum.value();
-  data.mae = abs_error.value() / static_cast<double>(pass.replicates);
+  data.mae = abs_error.value() / static_cast<double>(replicates);
   if (cell.image) folded.integrals = std::move(merged);
   return folded;
 }

@@ -29,6 +29,8 @@ struct FoldedCell {
 /// Replicates whose own rows are kept and written.
 inline constexpr std::int64_t kMostKept = 4096;
 
-FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& reference, const Journal& journal);
+/// The first `replicates` of a cell: the end of a stage of its pass, whose units up to there are in the journal.
+FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& reference, const Journal& journal,
+                     std::int64_t replicates);
 
 }  // namespace halfslope

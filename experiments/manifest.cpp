@@ -10,6 +10,7 @@
 #include "core/error.h"
 #include "core/kernel_library.h"
 #include "core/version.h"
+#include "experiments/stopping_keys.h"
 
 namespace halfslope {
 namespace {
@@ -29,6 +30,24 @@ std::string text_of(const Json& json) { return json.dump(2, ' ', false, Json::er
 
 Json optional(const std::optional<double>& x) { return x ? Json(*x) : Json(nullptr); }
 
+// How many replicates each pass came to: with the experiment, what the tables of a budget are a function of.
+Json passes_json(const Plan& plan) {
+  Json passes = Json::array();
+  for (const Pass& pass : plan.passes) {
+    const PlannedScene& scene = plan.scenes[pass.scene];
+    Json estimators = Json::array();
+    for (const std::size_t e : pass.estimators) estimators.push_back(scene.estimators[e].name);
+    passes.push_back({{"scene", scene.name},
+                      {"precision", to_string(pass.precision)},
+                      {"sampler", pass.sampler},
+                      {"estimators", estimators},
+                      {"samples", pass.samples},
+                      {"replicates", pass.replicates},
+                      {"evaluations", plan.evaluations(pass, pass.replicates)}});
+  }
+  return passes;
+}
+
 }  // namespace
 
 std::string manifest_json(const Spec& spec, const Plan& plan, const Results& results,
@@ -40,6 +59,8 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   manifest["name"] = spec.name;
   manifest["spec"] = Json::parse(canonical_json(spec));
   if (!spec.measures.empty()) manifest["spec"]["measures"] = spec.measures;
+  if (spec.target) manifest["spec"]["target"] = target_text(*spec.target);
+  if (spec.budget) manifest["spec"]["budget"] = budget_text(*spec.budget);
   manifest["spec_hash"] = spec_hash(spec);
   manifest["version"] = version();
   manifest["compiler"] = compiler();
@@ -56,6 +77,7 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   manifest["cells"] = plan.cells.size();
   manifest["evaluations"] = plan.evaluations();
   manifest["skipped"] = plan.skips;
+  if (spec.in_stages()) manifest["passes"] = passes_json(plan);
   if (!plan.sampler_fingerprints.empty()) manifest["sampler_fingerprints"] = plan.sampler_fingerprints;
   for (std::size_t s = 0; s < plan.scenes.size(); ++s) {
     manifest["references"].push_back({{"scene", plan.scenes[s].name},

@@ -5,21 +5,19 @@
 #include <numeric>
 #include <span>
 
+#include "analysis/stopping.h"
 #include "core/error.h"
 #include "experiments/images.h"
 #include "experiments/joined.h"
 #include "experiments/left_out_counts.h"
 #include "experiments/plan_notes.h"
+#include "experiments/plan_units.h"
 #include "experiments/reference.h"
+#include "experiments/stopping_keys.h"
 #include "samplers/file_points.h"
 
 namespace halfslope {
 namespace {
-
-// Samples of a unit, about: half a second of work, so that little is lost to an interruption.
-constexpr std::uint64_t kUnitSamples = std::uint64_t{1} << 24;
-constexpr int kTile = 256;
-constexpr std::int64_t kMostBatch = 4096;
 
 [[noreturn]] void fail_at(const Spec& spec, const std::string& key, const std::string& message) {
   const auto place = spec.places.find(key);
@@ -152,30 +150,6 @@ void place_estimators(const Spec& spec, Plan& plan) {
   }
 }
 
-// Tiles and batches that hold about kUnitSamples, a function of the spec alone.
-void size_units(Pass& pass, std::size_t pixels) {
-  const std::uint64_t each = std::max<std::uint64_t>(1, pass.evaluations());
-  pass.tile_pixels = static_cast<int>(std::clamp<std::uint64_t>(kUnitSamples / (each * 64), 1, kTile));
-  const std::uint64_t used = std::min<std::uint64_t>(static_cast<std::uint64_t>(pass.tile_pixels), pixels) * each;
-  const auto batch = static_cast<std::int64_t>(kUnitSamples / used / 64 * 64);
-  pass.batch_replicates = std::min(pass.replicates, std::clamp<std::int64_t>(batch, 64, kMostBatch));
-}
-
-void add_units(Plan& plan, std::size_t index) {
-  Pass& pass = plan.passes[index];
-  const std::size_t pixels = plan.scenes[pass.scene].pixels.size();
-  size_units(pass, pixels);
-  pass.first_unit = plan.units.size();
-  const auto tile = static_cast<std::size_t>(pass.tile_pixels);
-  for (std::int64_t b = 0; b < pass.batches(); ++b) {
-    const std::int64_t first = b * pass.batch_replicates;
-    for (std::size_t p = 0; p < pixels; p += tile) {
-      plan.units.push_back(
-          {index, p, std::min(tile, pixels - p), first, std::min(pass.batch_replicates, pass.replicates - first)});
-    }
-  }
-}
-
 // The pass that an estimator's cells share, made if it is not there.
 std::size_t pass_for(Plan& plan, const Pass& wanted) {
   for (std::size_t p = 0; p < plan.passes.size(); ++p) {
@@ -215,19 +189,6 @@ std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, 
   }
   return fmt::format("sampler '{}' cannot make N = {} in {} dimensions for '{}'; the nearest legal: {}",
                      sampler.info().name, samples, layout.dims(), estimator.name, nearest);
-}
-
-std::uint64_t Pass::evaluations() const {
-  return sequence ? samples.back() : std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
-}
-
-double Plan::evaluations() const {
-  double sum = 0;
-  for (const Unit& unit : units) {
-    sum += static_cast<double>(passes[unit.pass].evaluations()) * static_cast<double>(unit.pixel_count) *
-           static_cast<double>(unit.replicate_count);
-  }
-  return sum;
 }
 
 bool has_infinite_variance(const IntegralSource& source) {
@@ -285,7 +246,9 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
           pass.randomised = info.randomised;
           pass.allocation = allocation;
           pass.samples = legal_counts(spec, scene.estimators[e], *sampler, layout, left_out);
-          pass.replicates = info.replicates_of(spec.replicates);
+          pass.replicates = info.replicates_of(spec.in_stages() ? spec.most_replicates : spec.replicates);
+          pass.stages = spec.in_stages() ? replicate_schedule(pass.replicates, stages_per_doubling(spec))
+                                         : std::vector{pass.replicates};
           pass.key = stream_key(spec.seed, info.name, "run");
           for (const std::string& caveat : info.caveats) plan.skips.push_back(fmt::format("{}: {}", info.name, caveat));
           if (pass.samples.empty()) continue;

@@ -34,13 +34,18 @@ struct Pass {
   Allocation allocation;
   std::vector<std::size_t> estimators;  ///< indices into the scene's
   std::vector<std::uint64_t> samples;   ///< N, ascending, all legal
-  std::int64_t replicates = 1;
+  std::int64_t replicates = 1;          ///< that the tables are made of; in a fresh plan the most there can be
+  std::vector<std::int64_t> stages;     ///< replicates after each stage, after which it may stop; a plain run has one
   StreamKey key;
   int tile_pixels = 256;
   std::int64_t batch_replicates = 64;
-  std::uint64_t first_unit = 0;  ///< the number of its first unit in the plan
+  std::uint64_t first_unit = 0;          ///< the number of its first unit in the plan
+  std::size_t tiles = 1;                 ///< of its pixels: as many units has a batch, side by side
+  std::vector<std::int64_t> batch_ends;  ///< replicates after each batch; every stage ends with one
 
-  std::int64_t batches() const { return (replicates + batch_replicates - 1) / batch_replicates; }
+  std::size_t batches() const { return batch_ends.size(); }
+  /// Batches among the first `replicates`, an end of a stage.
+  std::size_t batches_within(std::int64_t replicates) const;
   /// Integrand evaluations that one replicate of one pixel takes.
   std::uint64_t evaluations() const;
 };
@@ -72,7 +77,9 @@ struct Plan {
   std::vector<std::string> skips;                         ///< what is not done, and why
   std::vector<std::string> left_out;                      ///< those of them that take something from the tables
   IntervalMethod interval = IntervalMethod::kBootstrapT;  ///< of the RMSE
-  double evaluations() const;                             ///< integrand evaluations of all units
+  double evaluations() const;                             ///< integrand evaluations of all passes' replicates
+  /// Of so many replicates of one pass.
+  double evaluations(const Pass& pass, std::int64_t replicates) const;
 };
 
 /// Resolves names and splits the work. Throws Error for names that are not in the catalogue (naming the nearest),

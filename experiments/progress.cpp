@@ -79,11 +79,11 @@ std::string summary_line(const ProgressState& state) {
 Progress::Progress(std::string label, double total_work, bool quiet, std::string unit)
     : label_(std::move(label)),
       unit_(std::move(unit)),
-      total_(total_work),
       quiet_(quiet),
       terminal_(!quiet && on_terminal()),
       colour_(colour_wanted()),
-      start_(std::chrono::steady_clock::now()) {}
+      start_(std::chrono::steady_clock::now()),
+      total_(total_work) {}
 
 Progress::~Progress() {
   if (drawn_ && !finished_) show(std::string(kClearLine));
@@ -91,7 +91,7 @@ Progress::~Progress() {
 
 ProgressState Progress::state() const {
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
-  return {label_, done_.load(), total_, elapsed.count(), unit_};
+  return {label_, done_.load(), total_.load(), elapsed.count(), unit_};
 }
 
 void Progress::advance(double work) {

@@ -44,6 +44,10 @@ class Progress {
   /// Thread-safe and cheap: an atomic addition, and ten times a second a line.
   void advance(double work);
 
+  /// For work whose amount turns out on the way: as much as is now expected in all.
+  void set_total(double total_work) { total_ = total_work; }
+  double done() const { return done_; }
+
   /// The summary instead of the bar. Further calls do nothing.
   void finish();
 
@@ -52,10 +56,9 @@ class Progress {
   void draw();
 
   const std::string label_, unit_;
-  const double total_;
   const bool quiet_, terminal_, colour_;
   const std::chrono::steady_clock::time_point start_;
-  std::atomic<double> done_ = 0;
+  std::atomic<double> total_, done_ = 0;
   std::atomic<std::int64_t> next_draw_ms_ = 0;
   std::mutex mutex_;  ///< of the terminal and `drawn_`, `finished_`
   bool drawn_ = false, finished_ = false;

@@ -73,7 +73,8 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
           begin, end,
           [&](std::size_t c) {
             const Cell& cell = plan.cells[c];
-            FoldedCell& folded = line[c - begin] = fold_cell(plan, cell, references[cell.scene], journal);
+            FoldedCell& folded = line[c - begin] =
+                fold_cell(plan, cell, references[cell.scene], journal, plan.passes[cell.pass].replicates);
             visitor.as_folded(cell, folded);
             results.cells[c] = result_of(plan, cell, folded, facts, shares[cell.scene]);
             folded.integrals = {};

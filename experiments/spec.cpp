@@ -41,6 +41,11 @@ void validate(const Spec& spec) {
   require(spec, "scene", !spec.scenes.empty());
   require(spec, "samplers", !spec.samplers.empty());
   require(spec, "samples", !spec.samples.counts.empty());
+  if (spec.target && spec.budget) {
+    fail(code_of(spec, {"target", "budget"}),
+         "{}: a target and a budget ({}) exclude each other; leave one out, or set it to 'none'",
+         place_of(spec, "target"), place_of(spec, "budget"));
+  }
   const std::vector<std::uint64_t>& samples = spec.samples.counts;
   for (std::uint64_t count : spec.images)
     if (!std::binary_search(samples.begin(), samples.end(), count))

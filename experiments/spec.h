@@ -39,6 +39,11 @@ struct Spec {
   std::vector<Precision> precision = {Precision::kF32};
   std::vector<std::string> measures;  ///< of the points that the samplers gave; in the order of measure_catalogue()
   IntervalMethod interval = IntervalMethod::kBootstrapT;  ///< of the RMSE
+  std::optional<double> target;       ///< replicates stop where every RMSE is known to ± this share of it
+  std::optional<double> budget;       ///< seconds that the cells share; not together with a target
+  /// Of a run that decides on the way how many replicates it takes; the key `replicates` sets both.
+  std::int64_t most_replicates = 4096;
+  bool in_stages() const { return target || budget; }
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;
@@ -63,7 +68,8 @@ void validate(const Spec& spec);
 
 /// Everything that determines the estimates of a run, as canonical JSON (sorted keys, no spaces): no name, no places,
 /// no output folder, no threads, no measures, which are taken of the points alone, and no interval, which is made of
-/// the estimates afterwards.
+/// the estimates afterwards. Of a target or a budget it has the stages alone: they say which estimates there are to
+/// choose from, whatever is chosen.
 std::string canonical_json(const Spec& spec);
 
 /// 16 hexadecimal digits that stand for canonical_json(spec).

@@ -5,6 +5,7 @@
 
 #include "core/random.h"
 #include "experiments/spec.h"
+#include "experiments/stopping_keys.h"
 
 namespace halfslope {
 
@@ -14,7 +15,8 @@ std::string canonical_json(const Spec& spec) {
   json["estimators"] = spec.estimators;
   json["samplers"] = spec.samplers;
   json["samples"] = spec.samples.counts;  // a range and the list of its counts give the same numbers
-  json["replicates"] = spec.replicates;
+  json["replicates"] = spec.in_stages() ? spec.most_replicates : spec.replicates;
+  if (spec.in_stages()) json["stages_per_doubling"] = stages_per_doubling(spec);
   json["seed"] = spec.seed;
   json["resolution"] = spec.resolution ? nlohmann::json(*spec.resolution) : nlohmann::json();
   json["pixels"] = spec.pixels ? nlohmann::json(*spec.pixels) : nlohmann::json("all");

@@ -8,6 +8,7 @@
 #include "analysis/measures.h"
 #include "core/assertion.h"
 #include "experiments/joined.h"
+#include "experiments/stopping_keys.h"
 
 namespace halfslope {
 namespace {
@@ -184,6 +185,15 @@ std::vector<std::string> interval_names() {
   return names;
 }
 
+// 'none' takes back what the file says.
+void set_quantity(std::optional<double>& field, const Key& key, const SpecValue& value,
+                  std::optional<double> (*parse)(std::string_view)) {
+  const SpecItem& item = only_item(key, value);
+  const std::string& written = text(key, value, item);
+  field = written == "none" ? std::nullopt : parse(written);
+  if (!field && written != "none") refuse(key, value, item);
+}
+
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its
 // part in canonical_json.
 const std::vector<Key>& keys() {
@@ -200,6 +210,7 @@ const std::vector<Key>& keys() {
       {"replicates", "an integer from 1 to 2^31", false,
        [](Spec& spec, const Key& key, const SpecValue& value) {
          spec.replicates = static_cast<std::int64_t>(integer(key, value, only_item(key, value), 1, kMaxReplicates));
+         spec.most_replicates = spec.replicates;
        }},
       {"seed", "an integer from 0 to 2^64 - 1 (2^63 - 1 in a file)", false,
        [](Spec& spec, const Key& key, const SpecValue& value) {
@@ -211,6 +222,10 @@ const std::vector<Key>& keys() {
       {"precision", "f32, f64, or a list of both", true, set_precision},
       {"measures", fmt::format("{}, a list of different ones, or 'none'", joined(measure_names())), true, set_measures},
       {"interval", joined(interval_names()), false, set_interval},
+      {"target", "'rmse ±5%' with a number above 0 and below 100, or 'none'", false,
+       [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.target, key, value, parse_target); }},
+      {"budget", "a time above 0 as in '60 s', '2 min' or '1 h', at most 1000 h, or 'none'", false,
+       [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.budget, key, value, parse_budget); }},
   };
   return table;
 }
