@@ -203,11 +203,7 @@ class BudgetRun {
 
   // The next round: the most promising stages that end in time, enough of them to keep the threads busy.
   std::vector<std::size_t> choose() const {
-    struct Offer {
-      std::size_t pass, units;
-      double seconds, narrowing;
-    };
-    std::vector<Offer> offers;
+    std::vector<StageOffer> offers;
     for (std::size_t p = 0; p < standings_.size(); ++p) {
       const Pass& pass = plan_.passes[p];
       const Standing& standing = standings_[p];
@@ -221,20 +217,9 @@ class BudgetRun {
           *standing.half_width * (1 - std::sqrt(static_cast<double>(now) / static_cast<double>(then)));
       offers.push_back({p, units, seconds, narrowing});
     }
-    std::ranges::stable_sort(
-        offers, [](const Offer& a, const Offer& b) { return a.narrowing * b.seconds > b.narrowing * a.seconds; });
-    std::vector<std::size_t> chosen;
-    double left = budget_ - spent_ - std::chrono::duration<double>(Clock::now() - round_start_).count();
-    std::size_t units = 0;
-    for (const Offer& offer : offers) {
-      if (units >= static_cast<std::size_t>(runner_.threads())) break;
-      if (offer.seconds > left) continue;
-      chosen.push_back(offer.pass);
-      left -= offer.seconds;
-      units += offer.units;
-    }
-    std::ranges::sort(chosen);
-    return chosen;
+    const std::chrono::duration<double> deciding = Clock::now() - round_start_;
+    return choose_stages(std::move(offers), budget_ - spent_ - deciding.count(),
+                         static_cast<std::size_t>(runner_.threads()));
   }
 
   const double budget_;
@@ -248,6 +233,23 @@ class BudgetRun {
 };
 
 }  // namespace
+
+std::vector<std::size_t> choose_stages(std::vector<StageOffer> offers, double seconds, std::size_t units) {
+  std::ranges::stable_sort(offers, [](const StageOffer& a, const StageOffer& b) {
+    return a.narrowing * b.seconds > b.narrowing * a.seconds;
+  });
+  std::vector<std::size_t> chosen;
+  std::size_t found = 0;
+  for (const StageOffer& offer : offers) {
+    if (found >= units) break;
+    if (offer.seconds > seconds) continue;
+    chosen.push_back(offer.pass);
+    seconds -= offer.seconds;
+    found += offer.units;
+  }
+  std::ranges::sort(chosen);
+  return chosen;
+}
 
 std::vector<std::int64_t> measure_within_budget(double seconds, const Plan& plan, std::span<const Reference> references,
                                                 Runner& runner) {

@@ -74,6 +74,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   outcome.results = collect_results(plan, references, journal, catalogue.samplers, options.threads, visitor);
   replicates_file.commit();
   if (spec.target) mark_missed(outcome.results, *spec.target);
+  if (!options.quiet) message("{}", report_stopping(spec, plan, outcome.results));
   for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.invalid ? 1 : 0;
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) write_file_atomically(folder.path(name), text);

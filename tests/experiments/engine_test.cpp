@@ -208,7 +208,7 @@ TEST(Engine, ManyReplicatesAreMergedAsIfTheyWereOneBatch) {
                                         {"replicates", std::to_string(kReplicates)},
                                         {"seed", "5"},
                                         {"precision", "f64"}});
-  ASSERT_GT(outcome.plan.passes[0].batches(), 1);
+  ASSERT_GT(outcome.plan.passes[0].batches(), 1u);
   const CsvTable cells = scope.table("convergence.csv"), rates = scope.table("rates.csv");
   ASSERT_EQ(cells.size(), 4u);
   EXPECT_EQ(scope.table("replicates.csv").size(), 0u);
