@@ -1,0 +1,47 @@
+#include "analysis/power.h"
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <numbers>
+
+#include "analysis/moments.h"
+
+namespace halfslope {
+namespace {
+
+constexpr double kRangeWidth = 1.96;
+
+// `at` falls or rises with s throughout, so the range's ends are those of s.
+template <class At>
+Prediction over_range(const InfluenceSpread& spread, At at) {
+  const double factor = std::exp(kRangeWidth * spread.log_error);
+  const double narrow = at(spread.deviation / factor), wide = at(spread.deviation * factor);
+  return {at(spread.deviation), std::min(narrow, wide), std::max(narrow, wide)};
+}
+
+}  // namespace
+
+double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
+double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+InfluenceSpread influence_spread(std::span<const double> influences) {
+  Moments moments;
+  moments.add(influences);
+  const double kurtosis = moments.m4() / (moments.m2() * moments.m2());
+  return {std::sqrt(moments.variance()), 0.5 * std::sqrt((kurtosis - 1) / static_cast<double>(moments.count))};
+}
+
+Prediction predicted_power(const InfluenceSpread& spread, double difference, double critical, double replicates) {
+  return over_range(spread, [&](double deviation) {
+    const double shift = std::abs(difference) * std::sqrt(replicates) / deviation;
+    return normal_probability(shift - critical) + normal_probability(-shift - critical);
+  });
+}
+
+Prediction predicted_replicates(const InfluenceSpread& spread, double difference, double critical, double power) {
+  const double shift = critical + normal_quantile(power);
+  return over_range(spread, [&](double deviation) { return std::pow(shift * deviation / difference, 2); });
+}
+
+}  // namespace halfslope
