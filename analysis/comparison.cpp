@@ -155,15 +155,27 @@ std::vector<float> stepdown(std::vector<Tested>& tested) {
   return largest;
 }
 
-/// Of a normal number, as improbable as the family's critical value is to one comparison's |T*|: what tests of many
-/// replicates will be held against.
-double normal_critical_value(const std::vector<Tested>& tested, std::vector<float> largest) {
+/// What a comparison must exceed to be told first: with these replicates, and with many, the normal number that is as
+/// improbable.
+struct CriticalValues {
+  double now, normal;
+};
+
+CriticalValues critical_values(const std::vector<Tested>& tested, std::vector<float> largest) {
   const auto at = largest.begin() + (std::lround((kComparisonResamples + 1) * (1 - kFamilyLevel)) - 1);
   std::nth_element(largest.begin(), at, largest.end());
   double share = 0;
   for (const Tested& one : tested)
     share += p_value(std::ranges::count_if(one.resampled, [&](float t) { return t >= *at; }));
-  return normal_quantile(1 - share / static_cast<double>(tested.size()) / 2);
+  return {*at, normal_quantile(1 - share / static_cast<double>(tested.size()) / 2)};
+}
+
+void predict(Comparison& comparison, const CriticalValues& critical) {
+  const double difference = std::log(kDifferenceToTell);
+  comparison.power =
+      predicted_power(*comparison.spread, difference, critical.now, static_cast<double>(comparison.replicates));
+  comparison.critical = critical.normal;
+  comparison.replicates_needed = predicted_replicates(*comparison.spread, difference, critical.normal, kPowerToTell);
 }
 
 }  // namespace
@@ -200,12 +212,13 @@ std::vector<Comparison> compare(std::span<const ComparedErrors> cells, std::span
   for (const auto& [rows, group] : groups) test_group(cells, rows, group, seed, tested);
   if (tested.empty()) return comparisons;
   for (Tested& one : tested) single_results(one);
-  const double critical = normal_critical_value(tested, stepdown(tested));
-  for (const Tested& one : tested) {
-    one.comparison->replicates_needed =
-        predicted_replicates(*one.comparison->spread, std::log(kDifferenceToTell), critical, kPowerToTell);
-  }
+  const CriticalValues critical = critical_values(tested, stepdown(tested));
+  for (const Tested& one : tested) predict(*one.comparison, critical);
   return comparisons;
+}
+
+Prediction predicted_power(const Comparison& pilot, double replicates) {
+  return predicted_power(*pilot.spread, std::log(kDifferenceToTell), pilot.critical, replicates);
 }
 
 std::vector<ColumnPair> all_pairs(std::size_t count) {

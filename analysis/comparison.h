@@ -31,7 +31,7 @@ const char* to_string(Verdict verdict);
 /// Resamples of a comparison, so that 5 % of a family of tests are well inside.
 inline constexpr int kComparisonResamples = 4999;
 inline constexpr double kFamilyLevel = 0.05;
-/// The difference that a comparison is asked to tell, and how probably: see Comparison::replicates_needed.
+/// The ratio of mean squared errors that predictions are about, and how probably it should be told.
 inline constexpr double kDifferenceToTell = 1.1;
 inline constexpr double kPowerToTell = 0.8;
 
@@ -45,9 +45,11 @@ struct Comparison {
   std::optional<double> p_adjusted;  ///< for the whole family
   Verdict verdict = Verdict::kNone;  ///< of p_adjusted
   std::optional<InfluenceSpread> spread;
-  /// The replicates with which a family like this tells a ratio of kDifferenceToTell with probability kPowerToTell.
-  std::optional<Prediction> replicates_needed;
-  std::string status;  ///< "ok", or marks joined by ';'
+  /// The probability that a difference of kDifferenceToTell is told in a family like this with R replicates, and the
+  /// replicates with which that probability is kPowerToTell.
+  std::optional<Prediction> power, replicates_needed;
+  double critical = 0;  ///< the normal number that replicates_needed is held against
+  std::string status;   ///< "ok", or marks joined by ';'
 };
 
 /// Compares the mean squared errors of pairs of cells. With M_k the mean of cell k's squared errors and c_k = M_k −
@@ -75,9 +77,16 @@ struct Comparison {
 /// `no-spread` (the influences are equal: the ratio stands, with nothing to say how sure it is), `reference-limited`
 /// (an M − V̄ is not positive). That do not: `few-replicates` (R < 16), `reference-limited` (V̄ above 10 % of an M).
 ///
+/// Predictions (analysis/power.h) hold against the family's critical value of the first step, the 0.95 (B + 1)-th of
+/// the largest |T*|; for other numbers of replicates, against that of a normal number as improbable as it.
+///
 /// Comparisons come in the order of `pairs`, whose columns must be there. A function of the errors and the seed alone.
 std::vector<Comparison> compare(std::span<const ComparedErrors> cells, std::span<const ColumnPair> pairs,
                                 std::uint64_t seed);
+
+/// The probability that a ratio of kDifferenceToTell is told by another family like the one of this comparison, with so
+/// many replicates. The comparison has a spread.
+Prediction predicted_power(const Comparison& pilot, double replicates);
 
 /// Every two of `count` columns, (0, 1), (0, 2), …; and every other one with `baseline`, which is their a.
 std::vector<ColumnPair> all_pairs(std::size_t count);

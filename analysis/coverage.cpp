@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "analysis/coverage_comparisons.h"
 #include "analysis/coverage_intervals.h"
 
 namespace halfslope {
@@ -17,6 +18,8 @@ namespace halfslope {
 std::span<const CoverageStudyInfo> coverage_studies() {
   static constexpr CoverageStudyInfo kStudies[] = {
       {"intervals", "of the RMSE by every method, and of the mean; and the heavy-tail mark", interval_coverage, 20000},
+      {"comparisons", "of the ratios of mean squared errors; false alarms of families, and differences found",
+       comparison_coverage, 4000},
   };
   return kStudies;
 }
