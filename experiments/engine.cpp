@@ -75,6 +75,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   replicates_file.commit();
   if (spec.target) mark_missed(outcome.results, *spec.target);
   if (!options.quiet) message("{}", report_stopping(spec, plan, outcome.results));
+  outcome.results.comparisons = compare_cells(outcome.results.cells, options.threads);
   for (const CellResult& cell : outcome.results.cells) outcome.invalid_cells += cell.statistics.invalid ? 1 : 0;
   const auto write = [&](const char* name, const std::string& text) {
     if (!text.empty()) write_file_atomically(folder.path(name), text);
@@ -83,6 +84,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   write("rates.csv", rates_csv(outcome.results));
   write("tails.csv", tails_csv(outcome.results));
   write("regions.csv", regions_csv(outcome.results));
+  write("comparisons.csv", comparisons_csv(outcome.results));
   write("convergence.csv", convergence_csv(outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
   // Last, since it is not part of the journal: what an interruption costs is these alone.

@@ -10,6 +10,7 @@
 #include "analysis/cell_statistics.h"
 #include "analysis/rates.h"
 #include "experiments/cell_name.h"
+#include "experiments/comparison_results.h"
 #include "experiments/fold.h"
 #include "experiments/plan.h"
 #include "experiments/region_results.h"
@@ -49,6 +50,7 @@ struct RateResult {
 struct Results {
   std::vector<CellResult> cells;  ///< in the order of the tables; the cells of a line side by side
   std::vector<RateResult> rates;  ///< in the order of the cells
+  std::vector<ComparisonFamily> comparisons;
 };
 
 /// The rates of every line of `cells`.

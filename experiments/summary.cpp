@@ -96,6 +96,15 @@ std::string main_table(const Results& results, const Slice& slice) {
   return text;
 }
 
+std::string differences(const Results& results, const CellResult& cell) {
+  for (const ComparisonFamily& family : results.comparisons) {
+    const CellName& name = results.cells[family.cells.front()].name;
+    if (name.scene == cell.name.scene && name.precision == cell.name.precision && name.samples == cell.name.samples)
+      return comparisons_text(results, family);
+  }
+  return "";
+}
+
 // RMSE of each shape's pixels, a column an estimator, on one sampler.
 std::string shape_table(const Slice& slice, const std::string& sampler) {
   std::vector<std::vector<std::string>> rows = {{"pixels of"}};
@@ -160,6 +169,7 @@ std::string summary(const Results& results) {
     text += fmt::format("{}{}, {}, N = {}, {}, {}\n\n", text.empty() ? "" : "\n", first.name.scene,
                         first.name.precision, slice.samples, counted(first.pixels, "pixel"), replicates_of(slice));
     text += main_table(results, slice);
+    if (const std::string told = differences(results, *slice.cells.front()); !told.empty()) text += "\n" + told;
     const std::string& sampler = first.name.sampler;
     if (first.regions.empty()) continue;
     text += fmt::format("\nRMSE over the pixels that see each shape, with {} points:\n\n", sampler) +

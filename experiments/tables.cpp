@@ -79,6 +79,52 @@ std::string tails_csv(const Results& results) {
   return csv.text();
 }
 
+std::string comparisons_csv(const Results& results) {
+  CsvWriter csv({"scene",
+                 "precision",
+                 "samples",
+                 "estimator_a",
+                 "sampler_a",
+                 "estimator_b",
+                 "sampler_b",
+                 "replicates",
+                 "mse_ratio",
+                 "mse_ratio_lo",
+                 "mse_ratio_hi",
+                 "p",
+                 "p_adjusted",
+                 "verdict",
+                 "power_10_percent",
+                 "power_10_percent_lo",
+                 "power_10_percent_hi",
+                 "replicates_10_percent",
+                 "replicates_10_percent_lo",
+                 "replicates_10_percent_hi",
+                 "status"});
+  const auto exp_of = [](const std::optional<double>& x) { return x ? if_finite(std::exp(*x)) : std::nullopt; };
+  const auto predicted = [&](const std::optional<Prediction>& prediction) {
+    for (double Prediction::*end : {&Prediction::value, &Prediction::lo, &Prediction::hi})
+      csv.cell(prediction ? if_finite((*prediction).*end) : std::nullopt);
+  };
+  bool any = false;
+  for (const ComparisonFamily& family : results.comparisons) {
+    for (const auto& [a, b, c] : family.rows) {
+      any = true;
+      const CellName &x = results.cells[a].name, &y = results.cells[b].name;
+      csv.cell(x.scene).cell(x.precision).cell(x.samples);
+      csv.cell(x.estimator).cell(x.sampler).cell(y.estimator).cell(y.sampler).cell(c.replicates);
+      csv.cell(exp_of(c.log_ratio));
+      csv.cell(exp_of(c.interval ? std::optional(c.interval->lo) : std::nullopt));
+      csv.cell(exp_of(c.interval ? std::optional(c.interval->hi) : std::nullopt));
+      csv.cell(c.p).cell(c.p_adjusted).cell(to_string(c.verdict));
+      predicted(c.power);
+      predicted(c.replicates_needed);
+      csv.cell(c.status).end_row();
+    }
+  }
+  return any ? csv.text() : "";
+}
+
 std::string regions_csv(const Results& results) {
   CsvWriter csv({"scene", "estimator", "sampler", "precision", "samples", "region", "pixels", "rmse", "rmse_lo",
                  "rmse_hi", "relmse", "relmse_lo", "relmse_hi"});

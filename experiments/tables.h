@@ -22,6 +22,8 @@ class ReplicatesTable {
   CsvWriter csv_;
 };
 std::string rates_csv(const Results& results);
+/// Empty where there is nothing to compare.
+std::string comparisons_csv(const Results& results);
 /// Empty where no scene has parts.
 std::string regions_csv(const Results& results);
 
@@ -31,6 +33,10 @@ std::string tails_csv(const Results& results);
 /// The rates of at least three scenes as a table: a row a sampler (and estimator, where there are several), a column a
 /// scene. Empty where there are fewer, or one row.
 std::string rates_side_by_side(const Results& results);
+
+/// Who wins and who cannot be told apart, in the family's scene and at its N: a line for the samplers of each estimator
+/// and for the estimators of each sampler. Empty where there is nothing to compare.
+std::string comparisons_text(const Results& results, const ComparisonFamily& family);
 
 /// What a person wants to see first: the largest N side by side, rates, and where an image has parts, which estimator
 /// wins where.
