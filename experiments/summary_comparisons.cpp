@@ -16,21 +16,21 @@ constexpr std::size_t kPageWidth = 118;
 
 /// The cells that share an estimator or a sampler, and how they are called beside each other.
 struct Line {
-  std::string title;
+  std::string title;  ///< what they share
   std::vector<std::size_t> cells;
   std::vector<std::string> names;
 };
 
 std::vector<Line> lines_of(const Results& results, const ComparisonFamily& family) {
   std::vector<Line> lines;
-  const auto gather = [&](std::string CellName::*shared, std::string CellName::*own, const char* what) {
+  const auto gather = [&](std::string CellName::*shared, std::string CellName::*own) {
     std::vector<std::string> titles;
     for (const std::size_t c : family.cells) {
       const CellName& name = results.cells[c].name;
       if (std::ranges::find(titles, name.*shared) == titles.end()) titles.push_back(name.*shared);
     }
     for (const std::string& title : titles) {
-      Line line{fmt::format("{} {}", what, title), {}, {}};
+      Line line{title, {}, {}};
       for (const std::size_t c : family.cells) {
         if (results.cells[c].name.*shared != title) continue;
         line.cells.push_back(c);
@@ -39,8 +39,8 @@ std::vector<Line> lines_of(const Results& results, const ComparisonFamily& famil
       if (line.cells.size() > 1) lines.push_back(std::move(line));
     }
   };
-  gather(&CellName::estimator, &CellName::sampler, "samplers, estimator");
-  gather(&CellName::sampler, &CellName::estimator, "estimators, sampler");
+  gather(&CellName::estimator, &CellName::sampler);
+  gather(&CellName::sampler, &CellName::estimator);
   return lines;
 }
 
@@ -149,9 +149,8 @@ std::string tie_text(const Line& line, const Group& group, const Lookup& lookup)
   const std::string names = and_joined(names_of(line, group));
   if (all_alike) return names + " err alike, replicate by replicate";
   if (!hardest) return "";
-  return fmt::format(
-      "{}, whom none beats, cannot be told apart at this budget; about {} replicates would tell a 10 % difference",
-      names, about(*hardest->replicates_needed));
+  return fmt::format("{} cannot be told apart at this budget; about {} replicates would tell a 10 % difference", names,
+                     about(*hardest->replicates_needed));
 }
 
 /// "A beats B by 1.8× [1.7, 1.9]" of the two of neighbouring groups that are nearest to each other; empty where no
@@ -199,14 +198,15 @@ std::string all_pairs_text(const Line& line, const Results& results, const Looku
       ranked.push_back(k);
   }
   if (ranked.empty()) return "";
-  std::string chain;
-  for (const Group& group : certain_order(line, ranked, results, lookup))
-    chain += (chain.empty() ? "" : " < ") + joined(names_of(line, group));
-  std::string text = wrapped(chain, "    ");
+  const std::vector<Group> order = certain_order(line, ranked, results, lookup);
   const Group first = take_unbeaten(line, ranked, lookup), second = take_unbeaten(line, ranked, lookup);
-  for (const std::string& sentence : {tie_text(line, first, lookup), win_text(line, first, second, lookup)}) {
-    if (!sentence.empty()) text += wrapped(sentence, "      ");
-  }
+  const std::string tie = tie_text(line, first, lookup), win = win_text(line, first, second, lookup);
+  if (second.empty() && !tie.empty()) return wrapped(line.title + ": " + tie, "  ");
+  std::string chain;
+  for (const Group& group : order) chain += (chain.empty() ? "" : " < ") + joined(names_of(line, group));
+  std::string text = wrapped(line.title + ": " + chain, "  ");
+  if (!tie.empty()) text += wrapped("beaten by none: " + tie, "    ");
+  if (!win.empty()) text += wrapped(win, "    ");
   return text;
 }
 
@@ -221,7 +221,7 @@ std::string with_first_text(const Line& line, const Lookup& lookup) {
       (lookup.beats(line.cells[0], line.cells[k]) ? worse : alike).push_back(line.names[k]);
     }
   }
-  std::string text;
+  std::string text = wrapped(line.title + ":", "  ");
   const auto say = [&](const char* what, const std::vector<std::string>& names) {
     if (!names.empty()) text += wrapped(fmt::format("{} {}: {}", what, line.names[0], joined(names)), "    ");
   };
@@ -231,17 +231,35 @@ std::string with_first_text(const Line& line, const Lookup& lookup) {
   return text;
 }
 
+/// Samplers of which no comparison says anything, with the mark of the first: "halton (deterministic)".
+std::string not_compared(const Results& results, const ComparisonFamily& family) {
+  std::vector<std::pair<std::string, std::string>> marks;  // by sampler; empty where something is said
+  for (const ComparedCells& row : family.rows) {
+    const bool said = row.comparison.verdict != Verdict::kNone || row.comparison.status.starts_with("equal");
+    for (const std::size_t c : {row.a, row.b}) {
+      const std::string& sampler = results.cells[c].name.sampler;
+      auto found = std::ranges::find(marks, sampler, &std::pair<std::string, std::string>::first);
+      if (found == marks.end()) found = marks.insert(found, {sampler, results.cells[c].statistics.status});
+      if (said) found->second.clear();
+    }
+  }
+  std::vector<std::string> samplers;
+  for (const auto& [sampler, mark] : marks) {
+    if (!mark.empty()) samplers.push_back(fmt::format("{} ({})", sampler, mark));
+  }
+  return samplers.empty() ? "" : wrapped("not compared: " + joined(samplers), "  ");
+}
+
 }  // namespace
 
 std::string comparisons_text(const Results& results, const ComparisonFamily& family) {
   const Lookup lookup(family);
   std::string text;
   for (const Line& line : lines_of(results, family)) {
-    const std::string said =
-        family.with_first_only ? with_first_text(line, lookup) : all_pairs_text(line, results, lookup);
-    if (!said.empty()) text += fmt::format("  {}\n{}", line.title, said);
+    text += family.with_first_only ? with_first_text(line, lookup) : all_pairs_text(line, results, lookup);
   }
   if (text.empty()) return "";
+  text += not_compared(results, family);
   const auto count =
       std::ranges::count_if(family.rows, [](const ComparedCells& row) { return row.comparison.p.has_value(); });
   return fmt::format(

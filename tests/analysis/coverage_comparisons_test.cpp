@@ -1,0 +1,54 @@
+#include "analysis/coverage_comparisons.h"
+
+#include <gtest/gtest.h>
+
+namespace halfslope {
+namespace {
+
+ErrorLaw two_point() {
+  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }};
+}
+
+ComparedFamily unlike(double shared, int pixels) {
+  ComparedFamily family{"", {gaussian_errors()}, shared, pixels};
+  const ErrorLaw others[] = {uniform_errors(), laplace_errors(), two_point()};
+  for (std::size_t k = 0; k < 10; ++k) family.laws.push_back(others[k % 3]);
+  return family;
+}
+
+// At 5 % of false alarms 300 families give 37 or more with probability 4e-7, and 3500 ratios of correlation within each
+// family stay far inside their bounds.
+void expect_few_alarms(const ComparedFamily& family, std::int64_t replicates) {
+  const auto rows = measure_alarms(family, replicates, {300, 7});
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].runs, 3000);
+  EXPECT_GE(rows[0].coverage(), 0.92);
+  EXPECT_LE(rows[0].coverage(), 0.985);
+  EXPECT_EQ(rows[1].runs, 300);
+  EXPECT_LE(rows[1].runs - rows[1].covered, 36);
+}
+
+TEST(MeasureAlarms, ErrorsOfUnlikeShapesAreNotToldApart) { expect_few_alarms(unlike(0, 1), 64); }
+TEST(MeasureAlarms, NorAreThoseOnCommonSamples) { expect_few_alarms(unlike(0.9, 1), 64); }
+TEST(MeasureAlarms, NorImagesOfSixteenReplicates) { expect_few_alarms(unlike(0.5, 16), 16); }
+
+TEST(MeasurePower, DifferencesAreFoundAsOftenAsPredicted) {
+  // 600 experiments: a share of 70 % within 4 + 9.7 percentage points but for 4e-7.
+  const auto rows = measure_power({"", {gaussian_errors(), gaussian_errors()}, 0.95}, 256, {600, 3});
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_GE(rows[0].coverage(), rows[0].coverage_least - 0.097);
+  EXPECT_LE(rows[0].coverage(), rows[0].coverage_most + 0.097);
+  EXPECT_GT(rows[0].coverage_least, 0.5);  // so the prediction is not near either end, where any would hold
+  EXPECT_LT(rows[0].coverage_most, 0.85);
+}
+
+TEST(MeasureAlarms, DoNotDependOnTheThreads) {
+  const auto one = measure_alarms(unlike(0, 1), 16, {60, 2, 1}), two = measure_alarms(unlike(0, 1), 16, {60, 2, 2});
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(one[i].covered, two[i].covered);
+    EXPECT_EQ(one[i].width, two[i].width);
+  }
+}
+
+}  // namespace
+}  // namespace halfslope
