@@ -33,10 +33,18 @@ InfluenceSpread influence_spread(std::span<const double> influences) {
 }
 
 Prediction predicted_power(const InfluenceSpread& spread, double difference, double critical, double replicates) {
-  return over_range(spread, [&](double deviation) {
+  const auto power = [&](double deviation) {
     const double shift = std::abs(difference) * std::sqrt(replicates) / deviation;
     return normal_probability(shift - critical) + normal_probability(-shift - critical);
-  });
+  };
+  Prediction prediction = over_range(spread, power);
+  // With v = log_error², log s is v too small on average, and a curved function of it off by half its second
+  // difference.
+  const double error = spread.log_error, deviation = spread.deviation * std::exp(error * error);
+  const double value =
+      2 * power(deviation) - (power(deviation * std::exp(error)) + power(deviation * std::exp(-error))) / 2;
+  prediction.value = std::clamp(value, prediction.lo, prediction.hi);
+  return prediction;
 }
 
 Prediction predicted_replicates(const InfluenceSpread& spread, double difference, double critical, double power) {

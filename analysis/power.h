@@ -21,7 +21,8 @@ struct Prediction {
 };
 
 /// The probability that a two-sided test tells a log ratio of `difference` from 0, by n replicates: with δ =
-/// difference/(s/√n), Φ(δ − z) + Φ(−δ − z). `critical` is z, 1.96 for a single comparison at 5 %.
+/// difference/(s/√n), Φ(δ − z) + Φ(−δ − z), less to second order the bias that the error of log s gives its mean over
+/// pilots, but within the range. `critical` is z, 1.96 for a single comparison at 5 %.
 Prediction predicted_power(const InfluenceSpread& spread, double difference, double critical, double replicates);
 
 /// The n at which predicted_power is `power`, in [0.5, 1) : (z + Φ⁻¹(power))² s²/difference², without the far tail.
