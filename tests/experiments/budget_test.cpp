@@ -41,7 +41,7 @@ TEST(ChooseStages, TakesNothingThatDoesNotEndInTime) {
 class Budget : public ::testing::Test {
  protected:
   Keys keys(const char* budget) const {
-    return {{"scene", "quarterdisk,invsqrtprod2,mis-toy"},
+    return {{"scene", "quarterdisk,ishigami,mis-toy"},
             {"estimators", "mean,balance,bsdf"},
             {"samplers", "independent,halton"},
             {"samples", "16,256"},
@@ -51,8 +51,8 @@ class Budget : public ::testing::Test {
   }
   std::vector<std::int64_t> replicates(const char* out) const {
     std::vector<std::int64_t> list;
-    for (const auto& pass : nlohmann::json::parse(read_file(scope_.path(out) / "manifest.json"))["passes"])
-      list.push_back(pass["replicates"]);
+    const auto manifest = nlohmann::json::parse(read_file(scope_.path(out) / "manifest.json"));
+    for (const auto& pass : manifest["passes"]) list.push_back(pass["replicates"]);
     return list;
   }
   std::string journal(const char* out) const { return read_file(scope_.path(out) / "journal"); }
@@ -109,7 +109,7 @@ TEST_F(Budget, GoesOnAfterAnInterruption) {
   kept["replicates"] = "4096";  // as many as are kept
   const RunOutcome whole = scope_.run(kept, "whole");
   const std::string bytes = journal("whole");
-  for (const double share : {0.3, 0.6, 0.9}) {
+  for (const double share : {0.3, 0.8}) {
     std::filesystem::create_directories(scope_.path("cut"));
     std::ofstream(scope_.path("cut") / "journal", std::ios::binary)
         << bytes.substr(0, static_cast<std::size_t>(static_cast<double>(bytes.size()) * share));
@@ -118,7 +118,8 @@ TEST_F(Budget, GoesOnAfterAnInterruption) {
       const std::vector<double>&a = whole.results.cells[c].replicate_mse, &b = outcome.results.cells[c].replicate_mse;
       const std::size_t common = std::min(a.size(), b.size());
       EXPECT_GE(common, whole.results.cells[c].facts.deterministic ? 1u : 64u);
-      EXPECT_TRUE(std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(common), b.begin()));
+      EXPECT_TRUE(std::equal(a.begin(), a.begin() + static_cast<std::ptrdiff_t>(common), b.begin()))
+          << to_string(whole.results.cells[c].name) << ", " << a.size() << " and " << b.size() << " replicates";
     }
   }
 }

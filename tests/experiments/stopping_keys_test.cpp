@@ -30,7 +30,7 @@ std::string refusal(const std::function<void()>& attempt, ExitCode code) {
   return "nothing was refused";
 }
 
-TEST(Target, IsAShareOfTheRmse) {
+TEST(ParseTarget, IsAShareOfTheRmse) {
   for (const char* text : {"rmse ±5%", "rmse ± 5 %", "rmse +-5%", "rmse 5%", "rmse  5.0 % "})
     EXPECT_EQ(parse_target(text), 0.05) << text;
   EXPECT_EQ(parse_target("rmse ±0.5%"), 0.005);
@@ -41,7 +41,7 @@ TEST(Target, IsAShareOfTheRmse) {
   EXPECT_EQ(parse_target(target_text(0.005)), 0.005);
 }
 
-TEST(Budget, IsATime) {
+TEST(ParseBudget, IsATime) {
   EXPECT_EQ(parse_budget("60 s"), 60);
   EXPECT_EQ(parse_budget("60s"), 60);
   EXPECT_EQ(parse_budget("1.5 min"), 90);
