@@ -15,7 +15,7 @@ constexpr double kPredictionError = 0.04;
 constexpr std::uint32_t kMainExperiment = 1, kPilot = 2;  // purposes of random numbers
 
 ErrorLaw two_point_errors() {
-  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }};
+  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }, {}};
 }
 
 /// Squared errors, [cell][replicate].

@@ -71,9 +71,9 @@ std::optional<Interval> log_mean_bca(const MeanBootstrap& bootstrap, double leve
 ///   1/μ in [1/m + w se T*_(25), 1/m + w se T*_(975)],   se = s/(√n m²),   w = 1 + (1.5 + γ²/2)/n,
 /// γ the values' skewness m3/m2^{3/2}. A resample that misses the large values has a small mean and a smaller spread
 /// still; on this scale its T* is what it should be where log m* − log m overstates it. The two corrections of w are
-/// empirical: γ² is what heavy tails show of themselves. Measured, it covers better than log_mean_bootstrap_t on every
-/// law but the shortest-tailed, at no greater width (docs/errors.md). Where the values do not bound μ from above, the
-/// upper end is infinite. Resamples of equal values count as there.
+/// empirical: γ² is what heavy tails show of themselves. Measured, it covers more often than log_mean_bootstrap_t on
+/// every law but the uniform one (docs/errors.md). Where the values do not bound μ from above, the upper end is
+/// infinite. Resamples of equal values count as there.
 std::optional<Interval> log_mean_reciprocal_t(const MeanBootstrap& bootstrap, double level = 0.95);
 
 }  // namespace halfslope
