@@ -12,6 +12,7 @@
 
 #include "analysis/coverage_comparisons.h"
 #include "analysis/coverage_intervals.h"
+#include "analysis/coverage_stopping.h"
 
 namespace halfslope {
 
@@ -20,6 +21,7 @@ std::span<const CoverageStudyInfo> coverage_studies() {
       {"intervals", "of the RMSE by every method, and of the mean; and the heavy-tail mark", interval_coverage, 20000},
       {"comparisons", "of the ratios of mean squared errors; false alarms of families, and differences found",
        comparison_coverage, 4000},
+      {"stopping", "of an RMSE whose interval decided how many replicates there are", stopping_coverage, 4000},
   };
   return kStudies;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "analysis/coverage.h"
+#include "analysis/error_laws.h"
 
 namespace halfslope {
 
@@ -9,8 +10,9 @@ namespace halfslope {
 /// the share whose target was not reached.
 std::vector<CoverageRow> stopping_coverage(const CoverageRequest& request);
 
-/// One of its rows: images of `pixels` integrals, in every one the same law of errors.
-enum class StoppingLaw : std::uint8_t { kGaussian, kLognormal };
-CoverageRow stopping_coverage(StoppingLaw law, int pixels, double target, const CoverageRequest& request);
+/// One of its rows: images of `pixels` integrals whose errors have the same law; `share` of the progress is its own.
+/// No runs where it was stopped.
+CoverageRow stopping_coverage(const ErrorLaw& law, int pixels, double target, const CoverageRequest& request,
+                              double share = 1);
 
 }  // namespace halfslope

@@ -86,7 +86,7 @@ TEST(GaussianReplicates, AreThoseOfTheNormalApproximation) {
 // standard errors of its expectation but with probability 6e-7. What stops is near what one integral needs, 211 of 256
 // at ±10 %, and an image of 16 independent pixels needs a sixteenth.
 TEST(StoppingCoverage, OfGaussianErrorsIsThatOfTheInterval) {
-  const CoverageRow one = stopping_coverage(StoppingLaw::kGaussian, 1, 0.10, {.runs = 2000});
+  const CoverageRow one = stopping_coverage(gaussian_errors(), 1, 0.10, {.runs = 2000});
   EXPECT_EQ(one.runs, 2000);
   EXPECT_GT(one.coverage(), 0.93 - 5 * std::sqrt(0.93 * 0.07 / 2000));
   EXPECT_LT(one.coverage(), 0.96 + 5 * std::sqrt(0.96 * 0.04 / 2000));
@@ -95,7 +95,7 @@ TEST(StoppingCoverage, OfGaussianErrorsIsThatOfTheInterval) {
   EXPECT_EQ(one.marked, 0);
   EXPECT_LE(one.width, 2 * std::log(1.1));
 
-  const CoverageRow image = stopping_coverage(StoppingLaw::kGaussian, 16, 0.05, {.runs = 600});
+  const CoverageRow image = stopping_coverage(gaussian_errors(), 16, 0.05, {.runs = 600});
   EXPECT_GT(image.coverage(), 0.93 - 5 * std::sqrt(0.93 * 0.07 / 600));
   EXPECT_LT(image.coverage(), 0.96 + 5 * std::sqrt(0.96 * 0.04 / 600));
   EXPECT_GE(image.replicates, kFirstStage);
@@ -103,8 +103,8 @@ TEST(StoppingCoverage, OfGaussianErrorsIsThatOfTheInterval) {
 }
 
 TEST(StoppingCoverage, DoesNotDependOnThreads) {
-  const CoverageRow one = stopping_coverage(StoppingLaw::kGaussian, 2, 0.15, {.runs = 60, .seed = 5, .threads = 1});
-  const CoverageRow many = stopping_coverage(StoppingLaw::kGaussian, 2, 0.15, {.runs = 60, .seed = 5, .threads = 3});
+  const CoverageRow one = stopping_coverage(gaussian_errors(), 2, 0.15, {.runs = 60, .seed = 5, .threads = 1});
+  const CoverageRow many = stopping_coverage(gaussian_errors(), 2, 0.15, {.runs = 60, .seed = 5, .threads = 3});
   EXPECT_EQ(one.covered, many.covered);
   EXPECT_EQ(one.replicates, many.replicates);
   EXPECT_EQ(one.width, many.width);
@@ -113,7 +113,7 @@ TEST(StoppingCoverage, DoesNotDependOnThreads) {
 // Errors of a lognormal integrand have a kurtosis of 10^4: hardly any run of them may pass for certified at ±20 %, for
 // which Gaussian ones need 58 replicates. (At 4096 replicates the mark asks for a kurtosis above 102.)
 TEST(StoppingCoverage, HeavyTailsDoNotStopEarly) {
-  const CoverageRow row = stopping_coverage(StoppingLaw::kLognormal, 1, 0.2, {.runs = 50});
+  const CoverageRow row = stopping_coverage(lognormal_errors(1.5), 1, 0.2, {.runs = 50});
   EXPECT_GT(row.replicates, 3000);
   EXPECT_GT(row.marked, 0.5);
 }
