@@ -97,7 +97,10 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
         {"exact", "every error is 0", "", ""},
         {"invalid", "an estimate or a reference is not finite; manifest.json names the first", "", ""},
         {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
-        {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""}};
+        {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""},
+        {"equal",
+         "both sides of a comparison have the same squared errors, replicate by replicate: there is nothing to tell",
+         "", ""}};
   }
   return rows;
 }

@@ -6,7 +6,7 @@ namespace halfslope {
 namespace {
 
 ErrorLaw two_point() {
-  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }};
+  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }, {}};
 }
 
 ComparedFamily unlike(double shared, int pixels) {
@@ -16,16 +16,16 @@ ComparedFamily unlike(double shared, int pixels) {
   return family;
 }
 
-// At 5 % of false alarms 300 families give 37 or more with probability 4e-7, and 3500 ratios of correlation within each
-// family stay far inside their bounds.
+// At 5 % of false alarms 150 families give 24 or more with probability 5e-7. (86 in 1000 families are what this is the
+// short form of.) The ratios' bounds are far outside what those of 150 tables come to.
 void expect_few_alarms(const ComparedFamily& family, std::int64_t replicates) {
-  const auto rows = measure_alarms(family, replicates, {300, 7});
+  const auto rows = measure_alarms(family, replicates, {150, 7});
   ASSERT_EQ(rows.size(), 2u);
-  EXPECT_EQ(rows[0].runs, 3000);
-  EXPECT_GE(rows[0].coverage(), 0.92);
-  EXPECT_LE(rows[0].coverage(), 0.985);
-  EXPECT_EQ(rows[1].runs, 300);
-  EXPECT_LE(rows[1].runs - rows[1].covered, 36);
+  EXPECT_EQ(rows[0].runs, 1500);
+  EXPECT_GE(rows[0].coverage(), 0.9);
+  EXPECT_LE(rows[0].coverage(), 0.99);
+  EXPECT_EQ(rows[1].runs, 150);
+  EXPECT_LE(rows[1].runs - rows[1].covered, 23);
 }
 
 TEST(MeasureAlarms, ErrorsOfUnlikeShapesAreNotToldApart) { expect_few_alarms(unlike(0, 1), 64); }
@@ -33,13 +33,13 @@ TEST(MeasureAlarms, NorAreThoseOnCommonSamples) { expect_few_alarms(unlike(0.9, 
 TEST(MeasureAlarms, NorImagesOfSixteenReplicates) { expect_few_alarms(unlike(0.5, 16), 16); }
 
 TEST(MeasurePower, DifferencesAreFoundAsOftenAsPredicted) {
-  // 600 experiments: a share of 70 % within 4 + 9.7 percentage points but for 4e-7.
-  const auto rows = measure_power({"", {gaussian_errors(), gaussian_errors()}, 0.95}, 256, {600, 3});
+  // 400 experiments: a share of 60 % within 4 + 12.5 percentage points but for 4e-7.
+  const auto rows = measure_power({"", {gaussian_errors(), gaussian_errors()}, 0.97}, 256, {400, 3});
   ASSERT_EQ(rows.size(), 1u);
-  EXPECT_GE(rows[0].coverage(), rows[0].coverage_least - 0.097);
-  EXPECT_LE(rows[0].coverage(), rows[0].coverage_most + 0.097);
+  EXPECT_GE(rows[0].coverage(), rows[0].coverage_least - 0.125);
+  EXPECT_LE(rows[0].coverage(), rows[0].coverage_most + 0.125);
   EXPECT_GT(rows[0].coverage_least, 0.5);  // so the prediction is not near either end, where any would hold
-  EXPECT_LT(rows[0].coverage_most, 0.85);
+  EXPECT_LT(rows[0].coverage_most, 0.8);
 }
 
 TEST(MeasureAlarms, DoNotDependOnTheThreads) {
