@@ -7,7 +7,6 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-#include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfVersion.h>
 
 #include <algorithm>
@@ -18,11 +17,11 @@
 #include "core/assertion.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/exr_claims.h"
 
 namespace halfslope {
 namespace {
 
-constexpr std::int64_t kMaxValues = std::int64_t{1} << 28;
 constexpr int kNoThreads = 0;  // OpenEXR's own pool: we are parallel above it
 
 class MemoryWriter : public Imf::OStream {
@@ -79,6 +78,7 @@ Imf::Header read_header(std::string_view bytes) {
   }
   if (Imf::isMultiPart(version)) throw Iex::InputExc("it has several parts; one is allowed");
   if (Imf::isNonImage(version)) throw Iex::InputExc("it has deep pixels; flat ones are allowed");
+  check_attribute_sizes(bytes);
   MemoryReader stream(bytes);
   stream.seekg(8);
   Imf::Header header;
@@ -87,46 +87,8 @@ Imf::Header read_header(std::string_view bytes) {
   return header;
 }
 
-void check_size(std::int64_t width, std::int64_t height, std::int64_t channels, const char* what) {
-  // Divisions, since the product of what a header claims may not fit in 64 bits.
-  if (width < 1 || height < 1 || channels < 1 || width > kMaxValues / channels ||
-      height > kMaxValues / channels / width) {
-    throw Iex::InputExc(
-        fmt::format("its {} is {} x {} with {} channels; at least one value and at most 2^28 are allowed", what, width,
-                    height, channels));
-  }
-}
-
-ExrImage decode(std::string_view bytes) {
-  const Imf::Header header = read_header(bytes);
-  const auto& window = header.dataWindow();
-  const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
-  const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-  std::int64_t channels = 0;
-  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) ++channels;
-  check_size(width, height, channels, "data window");
-  if (header.hasTileDescription()) {
-    check_size(header.tileDescription().xSize, header.tileDescription().ySize, channels, "tile");
-  }
-
-  ExrImage image{static_cast<int>(width), static_cast<int>(height), {}};
-  for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel) {
-    if (channel.channel().xSampling != 1 || channel.channel().ySampling != 1) {
-      throw Iex::InputExc(fmt::format("its channel '{}' is subsampled; one value a pixel is allowed", channel.name()));
-    }
-    image.channels.push_back({channel.name(), std::vector<float>(static_cast<std::size_t>(width * height))});
-  }
-
-  MemoryReader stream(bytes);
-  Imf::InputFile file(stream, kNoThreads);
-  if (!file.isComplete()) throw Iex::InputExc("it is incomplete: its writer did not finish");
-  Imf::FrameBuffer buffer;
-  for (ExrImage::Channel& channel : image.channels) {
-    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
-  }
-  file.setFrameBuffer(buffer);
-  file.readPixels(window.min.y, window.max.y);
-  return image;
+[[noreturn]] void fail_to_read(const std::filesystem::path& path, const std::exception& error) {
+  fail(ExitCode::kBadInput, "{}: cannot be read as an image: {}", path.string(), error.what());
 }
 
 }  // namespace
@@ -155,13 +117,60 @@ void write_exr(const std::filesystem::path& path, const ExrImage& image) {
   write_file_atomically(path, stream.bytes());
 }
 
-ExrImage read_exr(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path);
+ExrFile::ExrFile(std::filesystem::path path) : path_(std::move(path)), bytes_(read_file(path_)) {
   try {
-    return decode(bytes);
+    const Imf::Header header = read_header(bytes_);
+    check_claims(header, bytes_.size());
+    const auto &window = header.dataWindow(), &display = header.displayWindow();
+    width_ = window.max.x - window.min.x + 1;
+    height_ = window.max.y - window.min.y + 1;
+    x_ = std::int64_t{window.min.x} - display.min.x;
+    y_ = std::int64_t{window.min.y} - display.min.y;
+    display_width_ = std::int64_t{display.max.x} - display.min.x + 1;
+    display_height_ = std::int64_t{display.max.y} - display.min.y + 1;
+    for (auto channel = header.channels().begin(); channel != header.channels().end(); ++channel)
+      channels_.push_back({channel.name(), channel.channel().type == Imf::HALF});
   } catch (const std::exception& error) {
-    fail(ExitCode::kBadInput, "{}: cannot be read as an image: {}", path.string(), error.what());
+    fail_to_read(path_, error);
   }
+}
+
+const ExrFile::Channel* ExrFile::find(std::string_view name) const {
+  const auto found = std::ranges::find(channels_, name, &Channel::name);
+  return found == channels_.end() ? nullptr : &*found;
+}
+
+ExrImage ExrFile::read(std::span<const std::string> names) const {
+  try {
+    MemoryReader stream(bytes_);
+    Imf::InputFile file(stream, kNoThreads);
+    if (!file.isComplete()) throw Iex::InputExc("it is incomplete: its writer did not finish");
+    const auto& window = file.header().dataWindow();
+    const auto pixels = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    ExrImage image{width_, height_, {}};
+    for (const std::string& name : names) {
+      const Imf::Channel* channel = file.header().channels().findChannel(name);
+      assert_equal(channel != nullptr, true, "a channel that the file has");
+      if (channel->xSampling != 1 || channel->ySampling != 1)
+        throw Iex::InputExc(fmt::format("its channel '{}' is subsampled; one value a pixel is allowed", name));
+      image.channels.push_back({name, std::vector<float>(pixels)});
+    }
+    Imf::FrameBuffer buffer;
+    for (ExrImage::Channel& channel : image.channels)
+      buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window));
+    file.setFrameBuffer(buffer);
+    file.readPixels(window.min.y, window.max.y);
+    return image;
+  } catch (const std::exception& error) {
+    fail_to_read(path_, error);
+  }
+}
+
+ExrImage read_exr(const std::filesystem::path& path) {
+  const ExrFile file(path);
+  std::vector<std::string> names;
+  for (const ExrFile::Channel& channel : file.channels()) names.push_back(channel.name);
+  return file.read(names);
 }
 
 }  // namespace halfslope
