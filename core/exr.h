@@ -44,6 +44,7 @@ class ExrFile {
   /// file cannot be read.
   explicit ExrFile(std::filesystem::path path);
 
+  const std::filesystem::path& path() const { return path_; }
   int width() const { return width_; }    ///< of the data window
   int height() const { return height_; }  ///< of the data window
   /// The data window's first pixel, counted from the display window's: 0, 0 unless the image was cropped or has a

@@ -44,16 +44,24 @@ std::string key_help(const std::string& key) {
   return found == kHelp.end() ? "" : found->second;
 }
 
+/// " --flag --other", and the same of what the command is followed by.
+std::string completion_words(const CLI::App& command) {
+  std::string words;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const auto& name : option->get_lnames()) {
+      if (name != "help") words += " --" + name;
+    }
+  }
+  for (const CLI::App* next : command.get_subcommands([](const CLI::App*) { return true; }))
+    words += " " + next->get_name() + completion_words(*next);
+  return words;
+}
+
 // Every command and its flags, for the shell.
 std::string bash_completion(const CLI::App& app) {
   std::string commands, cases;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    std::string flags = "--help";
-    for (const CLI::Option* option : command->get_options()) {
-      for (const auto& name : option->get_lnames()) {
-        if (name != "help") flags += " --" + name;
-      }
-    }
+    const std::string flags = "--help" + completion_words(*command);
     commands += (commands.empty() ? "" : " ") + command->get_name();
     cases += fmt::format("    {}) words=\"{}\" ;;\n", command->get_name(), flags);
   }
@@ -65,7 +73,7 @@ std::string bash_completion(const CLI::App& app) {
          "    --measures) words=\"$(halfslope list measures --names) none\" ;;\n"
          "    figure) words=\"$(halfslope list figures --names)\" ;;\n"
          "    selfcheck) words=\"coverage\" ;;\n"
-         "    list) words=\"samplers estimators scenes measures figures statuses\" ;;\n"
+         "    list) words=\"samplers estimators scenes measures metrics figures statuses\" ;;\n"
          "    *) case \"${COMP_WORDS[1]}\" in\n" +
          cases + "    *) words=\"" + commands +
          "\" ;;\n    esac ;;\n  esac\n"
@@ -117,8 +125,9 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
 
   ListArguments list;
   bool names_only = false;
-  CLI::App* list_app = app.add_subcommand("list", "list samplers, estimators, scenes, measures, figures and statuses");
-  list_app->add_option("what", list.what, "samplers, estimators, scenes, measures, figures or statuses");
+  CLI::App* list_app =
+      app.add_subcommand("list", "list samplers, estimators, scenes, measures, metrics, figures and statuses");
+  list_app->add_option("what", list.what, "samplers, estimators, scenes, measures, metrics, figures or statuses");
   list_app->add_flag("--json", list.json, "as JSON");
   list_app->add_flag("--names", names_only, "names alone, a line each");
 
@@ -275,6 +284,33 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   selfcheck_app->add_flag("--json", selfcheck.json, "as JSON");
   selfcheck_app->add_flag("--quiet", selfcheck.quiet, "no progress");
 
+  AnalyzeImagesArguments images;
+  CLI::App* analyze_app = app.add_subcommand("analyze", "analyse what was made elsewhere: images");
+  analyze_app->require_subcommand(1);
+  CLI::App* images_app = analyze_app->add_subcommand("images", "tables of a run for EXR images of any renderer");
+  images_app
+      ->add_option("--pattern", images.pattern,
+                   "paths with the fields {scene} {estimator} {sampler} {precision} {samples} {seed}, such as "
+                   "'out/{estimator}/{sampler}/{samples}_{seed}.exr'; the seeds are the replicates")
+      ->required()
+      ->type_name("PATTERN");
+  images_app->add_option("--reference", images.reference, "the image to measure against; may have {scene}")
+      ->type_name("FILE");
+  images_app
+      ->add_option("--reference-halves", images.halves,
+                   "two independent images of the reference's integrals, for errors that need no variance of it; "
+                   "without --reference their mean is the reference")
+      ->type_name("A B")
+      ->expected(2);
+  images_app->add_option("--layer", images.layer, "channels LAYER.R, LAYER.G, LAYER.B (or LAYER.Y) instead of R, G, B")
+      ->type_name("LAYER");
+  images_app->add_option("--out", images.out, "folder of the tables (default: out/images)")->type_name("DIR");
+  images_app->add_option("--threads", images.threads, "threads; the results do not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 4096));
+  images_app->add_flag("--json", images.json, "print the rows of convergence.csv as JSON instead of the summary");
+  images_app->add_flag("--keep-going", images.keep_going, "exit 0 though files were missing, broken or not finite");
+  images_app->add_flag("--quiet", images.quiet, "no progress, no summary");
+
   CLI::App* completion_app =
       app.add_subcommand("completion", "print a bash completion script: source <(halfslope completion)");
 
@@ -307,6 +343,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   if (reference_app->parsed()) return reference_command(reference, catalogue);
   if (figure_app->parsed()) return figure_command(figure, catalogue);
   if (selfcheck_app->parsed()) return selfcheck_command(selfcheck);
+  if (images_app->parsed()) return analyze_images_command(images);
   if (completion_app->parsed()) fmt::print("{}", bash_completion(app));
   return 0;
 }

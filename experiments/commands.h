@@ -23,7 +23,7 @@ struct RunArguments {
 int run_command(const RunArguments& arguments, const Catalogue& catalogue);
 
 struct ListArguments {
-  std::string what;  ///< samplers, estimators, scenes, measures, figures, statuses, or empty for all
+  std::string what;  ///< samplers, estimators, scenes, measures, metrics, figures, statuses, or empty for all
   bool json = false, names_only = false;
 };
 int list_command(const ListArguments& arguments, const Catalogue& catalogue);
@@ -89,5 +89,13 @@ struct SelfcheckArguments {
   bool quiet = false, json = false;
 };
 int selfcheck_command(const SelfcheckArguments& arguments);
+
+struct AnalyzeImagesArguments {
+  std::string pattern, reference, layer, out;
+  std::vector<std::string> halves;  ///< none or two
+  int threads = 0;
+  bool json = false, keep_going = false, quiet = false;
+};
+int analyze_images_command(const AnalyzeImagesArguments& arguments);
 
 }  // namespace halfslope

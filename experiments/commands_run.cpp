@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "analysis/image_metrics.h"
 #include "analysis/measures.h"
 #include "core/error.h"
 #include "estimators/estimator.h"
@@ -70,6 +71,11 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
                                   any                        ? "any number of dimensions"
                                   : m.min_dims == m.max_dims ? fmt::format("{} dimensions", m.max_dims)
                                                              : fmt::format("at most {} dimensions", m.max_dims))});
+    }
+  } else if (what == "metrics") {
+    for (const ImageMetric& m : image_metrics()) {
+      rows.push_back({std::string(m.name), fmt::format("version {}: {}", m.version, m.formula),
+                      std::string(m.reference), "mean over pixels and channels, then over replicates"});
     }
   } else if (what == "figures") {
     for (const FigureInfo& f : figure_catalogue()) rows.push_back({f.name, f.description, f.reference, ""});
@@ -151,7 +157,8 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
 }
 
 int list_command(const ListArguments& arguments, const Catalogue& catalogue) {
-  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes", "measures", "figures", "statuses"};
+  const std::vector<std::string> kinds = {"samplers", "estimators", "scenes",  "measures",
+                                          "metrics",  "figures",    "statuses"};
   if (!arguments.what.empty() && std::find(kinds.begin(), kinds.end(), arguments.what) == kinds.end()) {
     fail(ExitCode::kUsage, "there is no list of '{}'{}; allowed: {}", arguments.what,
          did_you_mean(arguments.what, kinds), joined(kinds));

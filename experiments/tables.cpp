@@ -39,10 +39,14 @@ ReplicatesTable::ReplicatesTable()
     : csv_({"scene", "estimator", "sampler", "precision", "samples", "replicate", "mean", "mse", "mae",
             "max_abs_error"}) {}
 
-void ReplicatesTable::add(const CellName& cell, const std::vector<ReplicateErrors>& replicates) {
+void ReplicatesTable::add(const CellName& cell, const std::vector<ReplicateErrors>& replicates,
+                          std::span<const std::uint64_t> numbers) {
   for (std::size_t r = 0; r < replicates.size(); ++r) {
     key_cells(csv_, cell);
-    csv_.cell(cell.samples).cell(r).cell(if_finite(replicates[r].mean)).cell(if_finite(replicates[r].mse));
+    csv_.cell(cell.samples)
+        .cell(numbers.empty() ? r : numbers[r])
+        .cell(if_finite(replicates[r].mean))
+        .cell(if_finite(replicates[r].mse));
     csv_.cell(if_finite(replicates[r].mae)).cell(if_finite(replicates[r].max_abs_error)).end_row();
   }
 }

@@ -1,6 +1,8 @@
 // The files of a run folder, as text; docs/columns.md says what each column means.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,7 +16,9 @@ std::string convergence_csv(const Results& results);
 class ReplicatesTable {
  public:
   ReplicatesTable();
-  void add(const CellName& cell, const std::vector<ReplicateErrors>& replicates);
+  /// `numbers` are what the replicates are called; empty: from 0 on.
+  void add(const CellName& cell, const std::vector<ReplicateErrors>& replicates,
+           std::span<const std::uint64_t> numbers = {});
   /// The text since the last call, the header first.
   std::string take_text() { return csv_.take_text(); }
 

@@ -1,0 +1,53 @@
+// Errors of whole images against a reference, one image at a time.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "analysis/cell_statistics.h"
+#include "analysis/image_metrics.h"
+
+namespace halfslope {
+
+/// What images are measured against: R̂_p of P integrals (pixels × channels, in any order that the images share).
+struct ImageReference {
+  std::vector<double> value;
+  std::vector<double> variance;        ///< Var(R̂_p); empty: not known, and taken as 0
+  std::vector<double> half_a, half_b;  ///< two independent estimates of the same integrals; empty: none
+
+  double mean_variance() const;  ///< V̄; 0 where it is not known
+};
+
+/// The sums of a cell, from images that each are a replicate. Holds the fourth-order moments of every integral and a
+/// few numbers for each image, never an image.
+class ImageErrors {
+ public:
+  /// Keeps the reference by address; its vectors that are not empty have one length.
+  explicit ImageErrors(const ImageReference& reference);
+
+  /// One more replicate, as long as the reference. A non-finite value is counted and stays in every sum, which it makes
+  /// non-finite.
+  void add(std::span<const double> image);
+
+  /// What the images so far make of the cell: the sums that a run's replicates give (experiments/fold.h).
+  /// `reference_se` takes the reference's integrals as independent of one another. At least one image.
+  CellData data(std::uint64_t bootstrap_seed) const;
+
+  /// The values of image_metrics(), in its order; those that `statistics`, of data(), has are its numbers.
+  std::vector<MetricValue> metrics(const CellData& data, const CellStatistics& statistics) const;
+
+  /// The mean of (Î − A)(Î − B) of each image, A and B the reference's halves; empty where it has none.
+  const std::vector<double>& half_buffer_mse() const { return half_buffer_mse_; }
+
+ private:
+  const ImageReference& reference_;
+  std::vector<Moments> integrals_;
+  std::vector<ReplicateErrors> replicates_;
+  std::vector<std::vector<double>> metrics_;  ///< [metric][image]
+  std::vector<double> half_buffer_mse_;
+  LogHistogram abs_error_;
+  std::int64_t nonfinite_ = 0;
+};
+
+}  // namespace halfslope

@@ -1,0 +1,86 @@
+#include "analysis/image_metrics.h"
+
+#include <array>
+#include <cmath>
+
+#include "analysis/intervals.h"
+
+namespace halfslope {
+namespace {
+
+double squared(double image, double reference) { return (image - reference) * (image - reference); }
+double one(double /*reference*/) { return 1; }
+double relative_weight(double reference) { return 1 / (reference * reference + 0.01); }
+double shifted_weight(double reference) { return 1 / ((reference + 0.01) * (reference + 0.01)); }
+
+constexpr std::array kMetrics = {
+    ImageMetric{"mse", 1, MetricKind::kSquared, "(I - R)^2", "docs/columns.md", squared, one},
+    ImageMetric{"rmse", 1, MetricKind::kRooted, "(I - R)^2, the root of its mean", "docs/columns.md", squared, one},
+    ImageMetric{"mae", 1, MetricKind::kAbsolute, "|I - R|", "docs/columns.md",
+                [](double image, double reference) { return std::abs(image - reference); }, nullptr},
+    ImageMetric{
+        "relmse", 1, MetricKind::kSquared, "(I - R)^2 / (R^2 + 0.01)",
+        "Rousselle, Knaus & Zwicker, Adaptive Sampling and Reconstruction using Greedy Error Minimization, 2011",
+        [](double image, double reference) { return squared(image, reference) * relative_weight(reference); },
+        relative_weight},
+    ImageMetric{"mrse", 1, MetricKind::kSquared, "(I - R)^2 / (R + 0.01)^2", "pbrt-v4, imgtool diff --metric MRSE",
+                [](double image, double reference) { return squared(image, reference) * shifted_weight(reference); },
+                shifted_weight},
+    ImageMetric{
+        "mape", 1, MetricKind::kAbsolute, "|I - R| / (|R| + 0.01)", "mean absolute percentage error, as a fraction",
+        [](double image, double reference) { return std::abs(image - reference) / (std::abs(reference) + 0.01); },
+        nullptr},
+    ImageMetric{"smape", 1, MetricKind::kAbsolute, "|I - R| / (|I| + |R| + 0.01)",
+                "Vogels et al., Denoising with Kernel Prediction and Asymmetric Loss Functions, 2018; at most 1",
+                [](double image, double reference) {
+                  return std::abs(image - reference) / (std::abs(image) + std::abs(reference) + 0.01);
+                },
+                nullptr}};
+
+std::optional<double> if_positive(double value) {
+  return std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
+}
+
+std::optional<double> square(const std::optional<double>& root) {
+  return root ? std::optional(*root * *root) : std::nullopt;
+}
+
+}  // namespace
+
+std::span<const ImageMetric> image_metrics() { return kMetrics; }
+
+MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, double reference_share,
+                         bool exact, std::uint64_t seed) {
+  const bool corrected = metric.kind != MetricKind::kAbsolute;
+  const double share = corrected ? reference_share : 0;
+  MetricValue result;
+  if (corrected) result.reference_share = share;
+  if (exact && share == 0) {
+    result.value = 0;
+    return result;
+  }
+  Moments moments;
+  moments.add(replicates);
+  result.value = if_positive(moments.mean - share);
+  if (result.value) {
+    if (const auto interval = log_mean_bootstrap_t(replicates, seed)) {
+      result.lo = if_positive(std::exp(interval->lo) - share);
+      result.hi = if_positive(std::exp(interval->hi) - share);
+    }
+  }
+  if (metric.kind == MetricKind::kRooted) {
+    for (std::optional<double>* number : {&result.value, &result.lo, &result.hi}) {
+      if (*number) *number = std::sqrt(**number);
+    }
+  }
+  return result;
+}
+
+std::optional<MetricValue> metric_of(const ImageMetric& metric, const CellData& data, const CellStatistics& s) {
+  if (metric.name == "mse") return MetricValue{square(s.rmse), square(s.rmse_lo), square(s.rmse_hi), s.reference_mse};
+  if (metric.name == "rmse") return MetricValue{s.rmse, s.rmse_lo, s.rmse_hi, s.reference_mse};
+  if (metric.name == "relmse") return MetricValue{s.relmse, s.relmse_lo, s.relmse_hi, data.reference_relmse};
+  return std::nullopt;
+}
+
+}  // namespace halfslope
