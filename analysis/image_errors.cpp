@@ -22,13 +22,38 @@ double reference_share(const ImageReference& reference, double (*weight)(double)
   return sum.value() / static_cast<double>(reference.value.size());
 }
 
+double mean_standard_error(const ImageReference& reference) {
+  if (reference.variance.empty()) return 0;
+  const std::size_t pixels = reference.value.size() / reference.channels;
+  CompensatedSum sum;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double deviation = 0;
+    for (std::size_t p = i; p < reference.value.size(); p += pixels) deviation += std::sqrt(reference.variance[p]);
+    sum.add(deviation * deviation);
+  }
+  return std::sqrt(sum.value()) / static_cast<double>(reference.value.size());
+}
+
 }  // namespace
 
 double ImageReference::mean_variance() const { return mean_of(variance); }
 
+MetricValue half_buffer_metric(std::span<const double> half_buffer_mse) {
+  Moments moments;
+  moments.add(half_buffer_mse);
+  MetricValue result;
+  if (std::isfinite(moments.mean)) result.value = moments.mean;
+  if (const auto interval = t_interval(moments)) {
+    result.lo = interval->lo;
+    result.hi = interval->hi;
+  }
+  return result;
+}
+
 ImageErrors::ImageErrors(const ImageReference& reference)
     : reference_(reference), integrals_(reference.value.size()), metrics_(image_metrics().size()) {
   assert_equal(reference.value.empty(), false, "a reference without integrals");
+  assert_equal(reference.value.size() % reference.channels, std::size_t{0}, "integrals beyond the last whole channel");
   for (const auto* other : {&reference.variance, &reference.half_a, &reference.half_b})
     assert_equal(other->empty() || other->size() == reference.value.size(), true, "a reference of one length");
   assert_equal(reference.half_a.size(), reference.half_b.size(), "integrals of a reference's halves");
@@ -93,7 +118,7 @@ CellData ImageErrors::data(std::uint64_t bootstrap_seed) const {
   data.nonfinite = nonfinite_;
   data.reference_mean = mean_of(reference_.value);
   data.reference_mse = reference_.mean_variance();
-  data.reference_se = std::sqrt(data.reference_mse / static_cast<double>(data.integrals));
+  data.reference_se = mean_standard_error(reference_);
   data.reference_relmse = reference_share(reference_, [](double r) { return 1 / (r * r + 0.01); });
   data.bootstrap_seed = bootstrap_seed;
   return data;

@@ -10,14 +10,21 @@
 
 namespace halfslope {
 
-/// What images are measured against: R̂_p of P integrals (pixels × channels, in any order that the images share).
+/// What images are measured against: R̂_p of P integrals, the pixels of one channel after those of another.
 struct ImageReference {
+  std::size_t channels = 1;
   std::vector<double> value;
   std::vector<double> variance;        ///< Var(R̂_p); empty: not known, and taken as 0
   std::vector<double> half_a, half_b;  ///< two independent estimates of the same integrals; empty: none
 
   double mean_variance() const;  ///< V̄; 0 where it is not known
 };
+
+/// The mean squared error that two halves of a reference show, without its variance: of each image the mean over p of
+/// (Î_p − A_p)(Î_p − B_p), whose expectation is the mean squared error, since A, B and Î err independently and A and B
+/// not on average. It may be negative. The interval is Student's t over replicates; what the halves themselves leave
+/// unknown is not in it.
+MetricValue half_buffer_metric(std::span<const double> half_buffer_mse);
 
 /// The sums of a cell, from images that each are a replicate. Holds the fourth-order moments of every integral and a
 /// few numbers for each image, never an image.
@@ -31,7 +38,8 @@ class ImageErrors {
   void add(std::span<const double> image);
 
   /// What the images so far make of the cell: the sums that a run's replicates give (experiments/fold.h).
-  /// `reference_se` takes the reference's integrals as independent of one another. At least one image.
+  /// `reference_se` takes the reference's pixels as independent, and the channels of one pixel as rising and falling
+  /// together, since they share samples: √(Σ_pixels (Σ_channels √V)²)/P. At least one image.
   CellData data(std::uint64_t bootstrap_seed) const;
 
   /// The values of image_metrics(), in its order; those that `statistics`, of data(), has are its numbers.

@@ -20,7 +20,7 @@ constexpr std::array kMetrics = {
                 [](double image, double reference) { return std::abs(image - reference); }, nullptr},
     ImageMetric{
         "relmse", 1, MetricKind::kSquared, "(I - R)^2 / (R^2 + 0.01)",
-        "Rousselle, Knaus & Zwicker, Adaptive Sampling and Reconstruction using Greedy Error Minimization, 2011",
+        "after Rousselle, Knaus & Zwicker, Adaptive Sampling and Reconstruction using Greedy Error Minimization, 2011",
         [](double image, double reference) { return squared(image, reference) * relative_weight(reference); },
         relative_weight},
     ImageMetric{"mrse", 1, MetricKind::kSquared, "(I - R)^2 / (R + 0.01)^2", "pbrt-v4, imgtool diff --metric MRSE",
@@ -31,7 +31,7 @@ constexpr std::array kMetrics = {
         [](double image, double reference) { return std::abs(image - reference) / (std::abs(reference) + 0.01); },
         nullptr},
     ImageMetric{"smape", 1, MetricKind::kAbsolute, "|I - R| / (|I| + |R| + 0.01)",
-                "Vogels et al., Denoising with Kernel Prediction and Asymmetric Loss Functions, 2018; at most 1",
+                "after Vogels et al., Denoising with Kernel Prediction and Asymmetric Loss Functions, 2018; at most 1",
                 [](double image, double reference) {
                   return std::abs(image - reference) / (std::abs(image) + std::abs(reference) + 0.01);
                 },

@@ -185,6 +185,7 @@ ReferenceImage read_reference(const ReferenceFiles& files) {
   if (files.image.empty()) average_halves(reference);
   check_values(reference, reference.values.value, "its value", false);
   check_values(reference, reference.values.variance, "its variance", true);
+  reference.values.channels = reference.channels.size();
   CompensatedSum sum, squares;
   for (const double value : reference.values.value) {
     sum.add(value);

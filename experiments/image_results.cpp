@@ -71,6 +71,8 @@ std::vector<NamedMetric> named_metrics(const ImageErrors& errors, const CellData
     const ImageMetric& metric = image_metrics()[m];
     rows.push_back({std::string(metric.name), metric.version, values[m]});
   }
+  if (!errors.half_buffer_mse().empty())
+    rows.push_back({"half-buffer-mse", 1, half_buffer_metric(errors.half_buffer_mse())});
   return rows;
 }
 
