@@ -46,6 +46,9 @@ int analyze_images_command(const AnalyzeImagesArguments& a) {
   write_tables(RunFolder(out), request, images);
   if (a.json) {
     fmt::print("{}", cells_json(images.results));
+    for (const SceneReference& reference : images.references) {
+      if (!a.quiet) message("reference {}\n", reference.description);
+    }
   } else if (!a.quiet) {
     for (const SceneReference& reference : images.references) fmt::print("reference {}\n", reference.description);
     fmt::print("\n{}\nTables: {}\n", summary(images.results), out);

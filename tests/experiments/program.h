@@ -32,8 +32,9 @@ struct ChildOptions {
   std::map<std::string, std::string> environment = {};  ///< beside what we have ourselves
   std::string out_path = {};  ///< where stdout goes instead of Ended::out, e.g. /dev/full; "closed" closes it
   std::string err_path = {};  ///< likewise
-  std::optional<rlim_t> largest_file = {};  ///< RLIMIT_FSIZE
-  std::vector<std::string> launcher = {};   ///< put before the program: an emulator and its flags
+  std::optional<rlim_t> largest_file = {};   ///< RLIMIT_FSIZE
+  std::optional<rlim_t> address_space = {};  ///< RLIMIT_AS
+  std::vector<std::string> launcher = {};    ///< put before the program: an emulator and its flags
   std::string program = kProgram;
 };
 
@@ -66,6 +67,10 @@ class Child {
     if (options.largest_file) {
       const rlimit limit = {*options.largest_file, *options.largest_file};
       ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    if (options.address_space) {
+      const rlimit limit = {*options.address_space, *options.address_space};
+      ::setrlimit(RLIMIT_AS, &limit);
     }
     ::dup2(::open("/dev/null", O_RDONLY), STDIN_FILENO);
     redirect(STDOUT_FILENO, options.out_path, out_);
