@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace halfslope {
 
-/// What images are measured against: R̂_p of P integrals, the pixels of one channel after those of another.
+/// What images are measured against: R̂_p of P integrals, pixel-major, channels fastest.
 struct ImageReference {
   std::size_t channels = 1;
   std::vector<double> value;
@@ -19,12 +20,6 @@ struct ImageReference {
 
   double mean_variance() const;  ///< V̄; 0 where it is not known
 };
-
-/// The mean squared error that two halves of a reference show, without its variance: of each image the mean over p of
-/// (Î_p − A_p)(Î_p − B_p), whose expectation is the mean squared error, since A, B and Î err independently and A and B
-/// not on average. It may be negative. The interval is Student's t over replicates; what the halves themselves leave
-/// unknown is not in it.
-MetricValue half_buffer_metric(std::span<const double> half_buffer_mse);
 
 /// The sums of a cell, from images that each are a replicate. Holds the fourth-order moments of every integral and a
 /// few numbers for each image, never an image.
@@ -45,10 +40,12 @@ class ImageErrors {
   /// The values of image_metrics(), in its order; those that `statistics`, of data(), has are its numbers.
   std::vector<MetricValue> metrics(const CellData& data, const CellStatistics& statistics) const;
 
-  /// The mean of (Î − A)(Î − B) of each image, A and B the reference's halves; empty where it has none.
-  const std::vector<double>& half_buffer_mse() const { return half_buffer_mse_; }
+  /// The mean squared error that the reference's halves show (analysis/half_buffers.h); empty where it has none.
+  std::optional<MetricValue> half_buffers(std::uint64_t seed) const;
 
  private:
+  SubtractedShare share(double (*weight)(double)) const;
+
   const ImageReference& reference_;
   std::vector<Moments> integrals_;
   std::vector<ReplicateErrors> replicates_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "analysis/intervals.h"
+#include "analysis/reference_noise.h"
 
 namespace halfslope {
 namespace {
@@ -49,23 +50,24 @@ std::optional<double> square(const std::optional<double>& root) {
 
 std::span<const ImageMetric> image_metrics() { return kMetrics; }
 
-MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, double reference_share,
+MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, const SubtractedShare& share,
                          bool exact, std::uint64_t seed) {
   const bool corrected = metric.kind != MetricKind::kAbsolute;
-  const double share = corrected ? reference_share : 0;
+  const double subtracted = corrected ? share.mean : 0;
   MetricValue result;
-  if (corrected) result.reference_share = share;
-  if (exact && share == 0) {
+  if (corrected) result.reference_share = subtracted;
+  if (exact && subtracted == 0) {
     result.value = 0;
     return result;
   }
   Moments moments;
   moments.add(replicates);
-  result.value = if_positive(moments.mean - share);
+  result.value = if_positive(moments.mean - subtracted);
   if (result.value) {
     if (const auto interval = log_mean_bootstrap_t(replicates, seed)) {
-      result.lo = if_positive(std::exp(interval->lo) - share);
-      result.hi = if_positive(std::exp(interval->hi) - share);
+      const Interval wide = corrected ? widened_for_reference(*interval, moments.mean, share.noise) : *interval;
+      result.lo = if_positive(std::exp(wide.lo) - subtracted);
+      result.hi = if_positive(std::exp(wide.hi) - subtracted);
     }
   }
   if (metric.kind == MetricKind::kRooted) {
