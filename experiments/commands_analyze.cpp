@@ -20,6 +20,7 @@ void write_tables(const RunFolder& folder, const ImageRequest& request, const Im
     replicates.add(images.results.cells[c].name, images.cells[c].replicates, images.cells[c].seeds);
   const std::string name = std::filesystem::absolute(folder.path()).lexically_normal().filename().string();
   write_file_atomically(folder.path("replicates.csv"), replicates.take_text());
+  write_file_atomically(folder.path("tails.csv"), tails_csv(images.results));
   write_file_atomically(folder.path("rates.csv"), rates_csv(images.results));
   write_file_atomically(folder.path("metrics.csv"), metrics_csv(images));
   write_file_atomically(folder.path("convergence.csv"), convergence_csv(images.results));

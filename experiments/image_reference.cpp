@@ -34,9 +34,11 @@ std::vector<std::string> layers_of(const ExrFile& file) {
 
 std::vector<double> read_values(const ExrFile& file, const std::vector<std::string>& channels) {
   const ExrImage image = file.read(channels);
-  std::vector<double> values;
-  for (const ExrImage::Channel& channel : image.channels)
-    values.insert(values.end(), channel.values.begin(), channel.values.end());
+  std::vector<double> values(channels.size() * image.channels.front().values.size());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const std::vector<float>& from = image.channels[c].values;
+    for (std::size_t pixel = 0; pixel < from.size(); ++pixel) values[pixel * channels.size() + c] = from[pixel];
+  }
   return values;
 }
 
@@ -71,11 +73,11 @@ void check_values(const ReferenceImage& reference, const std::vector<double>& va
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i]) && !(variance && values[i] < 0)) continue;
     const auto width = static_cast<std::size_t>(reference.width);
-    const std::size_t pixels = width * static_cast<std::size_t>(reference.height), pixel = i % pixels;
+    const std::size_t channels = reference.channels.size(), pixel = i / channels;
     fail(ExitCode::kBadInput,
          "{}: {} is {} at pixel ({}, {}), channel {}, so nothing can be measured against it; mend or leave out the "
          "layer",
-         reference.path, what, values[i], pixel % width, pixel / width, reference.channels[i / pixels]);
+         reference.path, what, values[i], pixel % width, pixel / width, reference.channels[i % channels]);
   }
 }
 

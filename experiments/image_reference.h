@@ -20,8 +20,8 @@ struct ReferenceFiles {
   std::string layer;  ///< of the images; of the reference where it has it, else its own image
 };
 
-/// A reference read from its files. Integrals are channel by channel, each row by row from the top-left pixel of the
-/// data window.
+/// A reference read from its files. Integrals are pixel by pixel, row by row from the top-left pixel of the data
+/// window, channels fastest.
 struct ReferenceImage {
   std::string path;  ///< or both halves'
   int width = 0, height = 0;

@@ -41,26 +41,26 @@ struct Measured {
 void note_nonfinite(const ExrFile& file, const std::vector<double>& values, const ReferenceImage& reference,
                     const std::string& layer, std::uint64_t seed, Measured& measured) {
   const auto width = static_cast<std::size_t>(reference.width);
-  const std::size_t pixels = width * static_cast<std::size_t>(reference.height);
+  const std::size_t channels = reference.channels.size();
   std::size_t count = 0, infinite = 0, first = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::isfinite(values[i])) continue;
     infinite += std::isinf(values[i]) ? 1 : 0;
-    if (count++ == 0 || i % pixels < first % pixels) first = i;
+    if (count++ == 0) first = i;
   }
   if (count == 0) return;
-  const std::string channel = image_channels(file, layer)[first / pixels];
+  const std::string channel = image_channels(file, layer)[first % channels];
   const bool overflow = infinite > 0 && file.find(channel)->half;
   measured.problems.push_back(
       {file.path().string(),
        fmt::format("{} of {} values are not finite ({} NaN, {} infinite{}), the first at pixel ({}, {}), channel {}",
                    count, values.size(), count - infinite, infinite,
-                   overflow ? ": its numbers are halves, which end at 65504" : "", first % pixels % width,
-                   first % pixels / width, channel)});
+                   overflow ? ": its numbers are halves, which end at 65504" : "", first / channels % width,
+                   first / channels / width, channel)});
   if (!measured.finite) return;  // seeds are read in order, so the first stands
   measured.finite = false;
   measured.result.first_bad_replicate = seed;
-  measured.result.first_bad_pixel = first % pixels;
+  measured.result.first_bad_pixel = first / channels;
 }
 
 std::vector<NamedMetric> named_metrics(const ImageErrors& errors, const CellData& data,
@@ -71,8 +71,7 @@ std::vector<NamedMetric> named_metrics(const ImageErrors& errors, const CellData
     const ImageMetric& metric = image_metrics()[m];
     rows.push_back({std::string(metric.name), metric.version, values[m]});
   }
-  if (!errors.half_buffer_mse().empty())
-    rows.push_back({"half-buffer-mse", 1, half_buffer_metric(errors.half_buffer_mse())});
+  if (const auto halves = errors.half_buffers(data.bootstrap_seed)) rows.push_back({"half-buffer-mse", 1, *halves});
   return rows;
 }
 
@@ -96,12 +95,13 @@ Measured measure_cell(const CellFiles& files, const ReferenceImage& reference, c
   }
   measured.images = measured.cell.seeds.size();
   if (measured.images == 0) return measured;
-  const CellData data = errors.data(hash_text(to_string(files.name)));
+  CellData data = errors.data(hash_text(to_string(files.name)));
+  data.rounding_mse = unit * unit * reference.mean_square;
   CellResult& result = measured.result;
   result.replicates = data.replicates;
   result.pixels = static_cast<std::int64_t>(reference.values.value.size() / reference.channels.size());
   result.facts.deterministic = data.replicates == 1;
-  result.facts.rounding_mse = unit * unit * reference.mean_square;
+  result.facts.rounding_mse = data.rounding_mse;
   result.statistics = summarise(data);
   result.mse = data.mse.mean;
   measured.cell.replicates = data.per_replicate;

@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "analysis/intervals.h"
 #include "tests/analysis/cell_data_builder.h"
 
 namespace halfslope {
@@ -92,9 +91,10 @@ TEST(ImageErrorsTest, SquaredMetricsLoseTheReferencesShareAndOthersCannot) {
   EXPECT_EQ(named(without, "mrse").reference_share, 0.0);
   EXPECT_EQ(named(with, "smape").value, named(without, "smape").value);
   EXPECT_FALSE(named(with, "smape").reference_share);
-  // The channels of one pixel rise and fall together: pixel 0 has √1e-3 and 0, pixel 1 √2e-3 and √1e-3.
+  // The channels of one pixel rise and fall together: pixel 0 has √1e-3 and √2e-3, pixel 1 0 and √1e-3.
   EXPECT_THAT(data_a.reference_se,
-              DoubleNear(std::sqrt(1e-3 + std::pow(std::sqrt(2e-3) + std::sqrt(1e-3), 2)) / 4, 1e-15));
+              DoubleNear(std::sqrt(std::pow(std::sqrt(1e-3) + std::sqrt(2e-3), 2) + 1e-3) / 4, 1e-15));
+  EXPECT_THAT(data_a.reference_mse_noise, DoubleNear(2 * (3e-3 * 3e-3 + 1e-3 * 1e-3) / 16, 1e-18));
 }
 
 TEST(ImageErrorsTest, ANonFiniteValueIsCountedAndNeitherDroppedNorZeroed) {
@@ -127,10 +127,22 @@ TEST(ImageErrorsTest, HalfBuffersMultiplyTheErrorsAgainstEach) {
   ImageErrors errors(reference);
   errors.add(std::vector<double>{1, 3});
   errors.add(std::vector<double>{2, 0});
-  EXPECT_THAT(errors.half_buffer_mse(), testing::ElementsAre(0.5, 1));
-  const MetricValue value = half_buffer_metric(errors.half_buffer_mse());
-  EXPECT_THAT(*value.value, DoubleNear(0.75, 1e-15));
-  EXPECT_THAT(*value.hi - *value.lo, DoubleNear(2 * t_quantile(0.975, 1) * 0.25, 1e-12));  // s/√2 = 1/4
+  const auto value = errors.half_buffers(1);
+  ASSERT_TRUE(value);
+  EXPECT_THAT(*value->value, DoubleNear(0.75, 1e-15));
+  const ImageReference whole = {1, {1, 1.5}, {}, {}, {}};
+  EXPECT_FALSE(ImageErrors(whole).half_buffers(1));
+}
+
+// 2000 integrals of which the two worst, ⌈2000/1000⌉, err by 3 and 2 and all others by 1/10.
+TEST(ImageErrorsTest, TheWorstPixelsShareOfTheError) {
+  const ImageReference reference = {1, std::vector<double>(2000, 1), {}, {}, {}};
+  std::vector<double> image(2000, 1.1);
+  image[7] = 4;
+  image[1999] = -1;
+  ImageErrors errors(reference);
+  errors.add(image);
+  EXPECT_THAT(errors.data(1).worst_squared_error, DoubleNear(13, 1e-12));
 }
 
 }  // namespace
