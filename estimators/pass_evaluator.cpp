@@ -67,6 +67,20 @@ void PassEvaluator<T>::run(const Integral& integral, StreamKey key, std::uint32_
 }
 
 template <class T>
+void PassEvaluator<T>::make_points(StreamKey key, std::uint32_t pixel, std::uint32_t replicate) {
+  constexpr bool kLowWords = std::is_same_v<T, double>;
+  const auto make = [&](std::uint64_t count) {
+    sampler_->prepare({count, &layout_, key, pixel, replicate, kLowWords});
+    for (std::uint64_t first = 0; first < count; first += kBlock) {
+      points_.reset(layout_.dims(), static_cast<int>(std::min(kBlock, count - first)), kLowWords);
+      sampler_->fill(first, points_);
+    }
+  };
+  if (sampler_->info().sequence) return make(rounds_.back());
+  for (const std::uint64_t count : rounds_) make(count);
+}
+
+template <class T>
 void PassEvaluator<T>::clear() {
   std::fill_n(sums_.data(), sums_.size(), 0.0);
   std::fill_n(compensations_.data(), compensations_.size(), 0.0);

@@ -31,6 +31,9 @@ class PassEvaluator {
                                    kLanes;
   }
 
+  /// Makes the points that run() takes, block by block as it does, and evaluates nothing: what points alone cost.
+  void make_points(StreamKey key, std::uint32_t pixel, std::uint32_t replicate);
+
  private:
   void sum_points(const Integral& integral, std::uint64_t begin, std::uint64_t end);
   void report(std::size_t n);

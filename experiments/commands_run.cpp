@@ -21,6 +21,7 @@
 #include "experiments/plan_references.h"
 #include "experiments/stages.h"
 #include "experiments/tables.h"
+#include "experiments/timing_tables.h"
 
 namespace halfslope {
 namespace {
@@ -132,6 +133,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
                               {"evaluations_least", least_evaluations(plan)},
                               {"discrepancies", plan.measures.rows()},
                               {"references", describe_references(plan, catalogue.samplers)},
+                              {"timings", spec.timing > 0 ? plan.cells.size() : 0},
                               {"skipped", plan.skips}}
                              .dump(2, ' ', false, Json::error_handler_t::replace));
     } else {
@@ -145,8 +147,9 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
     fmt::print("{}", cells_json(outcome.results));
   } else if (!arguments.quiet) {
     const std::string measured = measures_summary(outcome.plan.measures, outcome.measured);
-    fmt::print("{}\n{}{}Tables and images: {}\n", summary(outcome.results), measured, measured.empty() ? "" : "\n",
-               out);
+    const std::string timed = timing_summary(outcome.timed);
+    fmt::print("{}\n{}{}{}{}Tables and images: {}\n", summary(outcome.results), measured, measured.empty() ? "" : "\n",
+               timed, timed.empty() ? "" : "\n", out);
   }
   if (outcome.invalid_cells > 0) {
     message("halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",

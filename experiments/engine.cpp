@@ -18,6 +18,7 @@
 #include "experiments/runner.h"
 #include "experiments/stages.h"
 #include "experiments/tables.h"
+#include "experiments/timing_tables.h"
 
 namespace halfslope {
 namespace {
@@ -27,6 +28,27 @@ std::string run_hash(const Spec& spec, const Plan& plan) {
   for (const PlannedScene& scene : plan.scenes) text += "\n" + scene.source->fingerprint();
   for (const std::string& fingerprint : plan.sampler_fingerprints) text += "\n" + fingerprint;
   return fmt::format("{:016x}", hash_text(text));
+}
+
+/// Times the cells and writes what that gives; or removes what an earlier run that asked for it left.
+void time_and_write(const Spec& spec, const Catalogue& catalogue, const RunOptions& options, const RunFolder& folder,
+                    RunOutcome& outcome) {
+  if (spec.timing == 0) {
+    std::error_code ignored;
+    for (const char* name : kTimingFiles) std::filesystem::remove(folder.path(name), ignored);
+    return;
+  }
+  try {
+    outcome.timed = timing_results(outcome.results, time_cells(outcome.plan, catalogue.samplers, spec.timing,
+                                                               spec.name + ", timing", options.quiet));
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kInterrupted) throw;
+    fail(ExitCode::kInterrupted, "{}; everything else is done and written: run the same command again for timing.csv",
+         error.what());
+  }
+  const std::array texts = {timing_csv(outcome.timed), timing_parts_csv(outcome.timed), equal_time_csv(outcome.timed),
+                            equal_error_csv(outcome.timed), timing_json(outcome.timed, spec.name)};
+  for (std::size_t k = 0; k < texts.size(); ++k) write_file_atomically(folder.path(kTimingFiles[k]), texts[k]);
 }
 
 }  // namespace
@@ -102,6 +124,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     std::error_code ignored;  // of an earlier run that asked for some
     std::filesystem::remove(folder.path("discrepancy.csv"), ignored);
   }
+  time_and_write(spec, catalogue, options, folder, outcome);
   return outcome;
 }
 
@@ -147,6 +170,7 @@ std::string describe_plan(const Spec& spec, const Plan& plan, const Catalogue& c
   const auto references = describe_references(plan, catalogue.samplers);
   if (!references.empty()) text += "references:\n";
   for (const auto& line : references) text += "  " + line + "\n";
+  text += describe_timing(plan, spec.timing);
   text += "skipped:\n";
   for (const auto& skip : plan.skips) text += "  " + skip + "\n";
   return text;

@@ -7,6 +7,7 @@
 #include "experiments/catalogue.h"
 #include "experiments/plan.h"
 #include "experiments/results.h"
+#include "experiments/timing_results.h"
 
 namespace halfslope {
 
@@ -21,6 +22,7 @@ struct RunOutcome {
   Plan plan;
   Results results;
   Measurements measured;
+  std::vector<TimingResult> timed;
   std::size_t invalid_cells = 0;
 };
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/error.h"
+#include "experiments/timing_tables.h"
 
 namespace halfslope {
 namespace {
@@ -33,9 +34,11 @@ bool is_temporary(const std::filesystem::path& file) {
 }
 
 bool is_table(const std::string& name) {
-  constexpr std::array kTables = {"convergence.csv", "replicates.csv",  "rates.csv",    "regions.csv",
-                                  "tails.csv",       "discrepancy.csv", "manifest.json"};
-  return std::find(kTables.begin(), kTables.end(), name) != kTables.end();
+  constexpr std::array kTables = {"convergence.csv", "replicates.csv",  "rates.csv",       "regions.csv",
+                                  "tails.csv",       "comparisons.csv", "discrepancy.csv", "manifest.json"};
+  const std::vector<std::string> timed = timing_files();
+  return std::find(kTables.begin(), kTables.end(), name) != kTables.end() ||
+         std::find(timed.begin(), timed.end(), name) != timed.end();
 }
 
 }  // namespace

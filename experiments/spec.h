@@ -44,6 +44,7 @@ struct Spec {
   /// Of a run that decides on the way how many replicates it takes; the key `replicates` sets both.
   std::int64_t most_replicates = 4096;
   bool in_stages() const { return target || budget; }
+  int timing = 0;                     ///< repetitions of each cell's timing; 0: nothing is timed
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;
@@ -67,9 +68,9 @@ void apply_flag(Spec& spec, std::string_view key, std::string_view value, std::s
 void validate(const Spec& spec);
 
 /// Everything that determines the estimates of a run, as canonical JSON (sorted keys, no spaces): no name, no places,
-/// no output folder, no threads, no measures, which are taken of the points alone, and no interval, which is made of
-/// the estimates afterwards. Of a target or a budget it has the stages alone: they say which estimates there are to
-/// choose from, whatever is chosen.
+/// no output folder, no threads, no measures, which are taken of the points alone, no interval, which is made of the
+/// estimates afterwards, and no timing. Of a target or a budget it has the stages alone: they say which estimates there
+/// are to choose from, whatever is chosen.
 std::string canonical_json(const Spec& spec);
 
 /// 16 hexadecimal digits that stand for canonical_json(spec).

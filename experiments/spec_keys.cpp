@@ -17,6 +17,7 @@ namespace {
 constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 48;
 constexpr std::uint64_t kMaxReplicates = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxSide = 65536;  // a pixel's index in the full image fits 32 bits
+constexpr std::uint64_t kFewestTimings = 3, kMostTimings = 10000;
 
 struct Key {
   std::string name;
@@ -194,6 +195,12 @@ void set_quantity(std::optional<double>& field, const Key& key, const SpecValue&
   if (!field && written != "none") refuse(key, value, item);
 }
 
+void set_timing(Spec& spec, const Key& key, const SpecValue& value) {
+  const SpecItem& item = only_item(key, value);
+  const bool none = item.text == "none" && item.kind != SpecItem::Kind::kOther;
+  spec.timing = none ? 0 : static_cast<int>(integer(key, value, item, kFewestTimings, kMostTimings));
+}
+
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its
 // part in canonical_json.
 const std::vector<Key>& keys() {
@@ -226,6 +233,7 @@ const std::vector<Key>& keys() {
        [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.target, key, value, parse_target); }},
       {"budget", "a time above 0 as in '60 s', '2 min' or '1 h', at most 1000 h, or 'none'", false,
        [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.budget, key, value, parse_budget); }},
+      {"timing", "an integer from 3 to 10000, the repetitions, or 'none'", false, set_timing},
   };
   return table;
 }

@@ -1,0 +1,122 @@
+#include "experiments/timing_results.h"
+
+#include <algorithm>
+
+#include "analysis/status.h"
+#include "core/assertion.h"
+
+namespace halfslope {
+namespace {
+
+constexpr int kFurther = 2;  // times and errors beside the one that all lines have
+
+template <class Number>
+MedianEstimate median_of(const std::vector<TimedRun>& runs, const Number& number) {
+  std::vector<double> values;
+  for (const TimedRun& run : runs) values.push_back(number(run));
+  return median_estimate(values);
+}
+
+/// The lines of one scene and precision.
+struct Group {
+  std::vector<CellName> names;
+  std::vector<WorkCurve> curves;
+};
+
+std::vector<Group> groups_of(const std::vector<TimingResult>& rows) {
+  std::vector<Group> groups;
+  for (auto row = rows.begin(); row != rows.end();) {
+    const auto end =
+        std::find_if(row, rows.end(), [&](const TimingResult& r) { return !same_line(r.name, row->name); });
+    auto group = std::ranges::find_if(groups, [&](const Group& g) {
+      return g.names.front().scene == row->name.scene && g.names.front().precision == row->name.precision;
+    });
+    if (group == groups.end()) group = groups.insert(group, Group());
+    std::vector<WorkPoint> points;
+    group->names.push_back(row->name);
+    group->names.back().samples = 0;
+    for (; row != end; ++row) {
+      if (row->rmse)
+        points.push_back({static_cast<double>(row->name.samples), row->seconds(), *row->rmse, row->certified});
+    }
+    group->curves.emplace_back(std::move(points));
+  }
+  return groups;
+}
+
+using Ask = WorkAnswer (WorkCurve::*)(double) const;
+
+std::optional<EqualWork> ask(const Group& group, Ask question, double at) {
+  EqualWork work = {at, {}};
+  for (std::size_t k = 0; k < group.names.size(); ++k)
+    work.lines.push_back({group.names[k], (group.curves[k].*question)(at)});
+  const bool answered =
+      std::ranges::any_of(work.lines, [](const LineAnswer& l) { return l.answer.reach == Reach::kInside; });
+  return answered ? std::optional(std::move(work)) : std::nullopt;
+}
+
+/// `first` over the curves' last points gives the number to begin with, and `step` leads to the next.
+template <class First>
+std::vector<EqualWork> ask_all(const std::vector<TimingResult>& rows, Ask question, const First& first, double step) {
+  std::vector<EqualWork> answers;
+  for (const Group& group : groups_of(rows)) {
+    std::vector<WorkPoint> last;
+    for (const WorkCurve& curve : group.curves) {
+      if (!curve.points().empty()) last.push_back(curve.points().back());
+    }
+    if (last.empty()) continue;
+    double at = first(last);
+    for (int k = 0; k <= kFurther; ++k, at *= step) {
+      if (auto work = ask(group, question, at)) answers.push_back(std::move(*work));
+    }
+  }
+  return answers;
+}
+
+}  // namespace
+
+PositiveEstimate TimingResult::seconds() const {
+  const double factor = static_cast<double>(name.samples) * 1e-9;
+  return {all.median * factor, all.interval.lo * factor, all.interval.hi * factor};
+}
+
+std::vector<TimingResult> timing_results(const Results& results, std::vector<CellTimes> times) {
+  assert_equal(times.size(), results.cells.size(), "cells and their times");
+  std::vector<TimingResult> rows;
+  for (std::size_t c = 0; c < times.size(); ++c) {
+    if (times[c].runs.empty()) continue;
+    const CellResult& cell = results.cells[c];
+    const CellStatistics& s = cell.statistics;
+    TimingResult& row = rows.emplace_back();
+    row.name = cell.name;
+    row.times = std::move(times[c]);
+    row.all = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns; });
+    row.points = median_of(row.times.runs, [](const TimedRun& run) { return run.points_ns; });
+    row.evaluation = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns - run.points_ns; });
+    row.certified = s.status == "ok" || s.status == "deterministic";
+    Status status;
+    status.mark_if(s.status != "ok", s.status);
+    status.mark_if(row.all.coverage < 0.95, "few-repetitions");
+    row.status = status.text();
+    if (!s.rmse || !(*s.rmse > 0)) continue;
+    row.rmse = PositiveEstimate{*s.rmse, s.rmse_lo, s.rmse_hi};
+    row.efficiency = efficiency(*row.rmse, row.seconds());
+  }
+  return rows;
+}
+
+std::vector<EqualWork> equal_times(const std::vector<TimingResult>& rows) {
+  const auto fastest = [](const std::vector<WorkPoint>& last) {
+    return std::ranges::min(last, {}, [](const WorkPoint& p) { return p.seconds.value; }).seconds.value;
+  };
+  return ask_all(rows, &WorkCurve::error_after, fastest, 0.25);
+}
+
+std::vector<EqualWork> equal_errors(const std::vector<TimingResult>& rows) {
+  const auto worst = [](const std::vector<WorkPoint>& last) {
+    return std::ranges::max(last, {}, [](const WorkPoint& p) { return p.rmse.value; }).rmse.value;
+  };
+  return ask_all(rows, &WorkCurve::time_until, worst, 2);
+}
+
+}  // namespace halfslope
