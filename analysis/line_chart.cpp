@@ -110,10 +110,18 @@ void draw_cut_line(Canvas& canvas, const std::vector<Position>& points, double t
   end_piece();
 }
 
+/// A bar along x, with caps.
+void draw_x_bar(Canvas& canvas, const Axes& axes, const ChartPoint& p, const Stroke& stroke) {
+  const Position left = axes.at(*p.x_lo, p.y), right = axes.at(*p.x_hi, p.y);
+  canvas.line({left, right}, stroke);
+  for (const Position& end : {left, right}) canvas.line({{end.x, end.y - 1.5}, {end.x, end.y + 1.5}}, stroke);
+}
+
 /// Bars and caps of the points' intervals, cut where the frame ends.
 void draw_bars(Canvas& canvas, const Axes& axes, const ChartLine& line, const ChartStyle& style, const Stroke& stroke) {
   const double lowest = axes.y.scale.lo, highest = axes.y.scale.hi;
   for (const ChartPoint& p : line.points) {
+    if (p.x_lo && p.x_hi && drawn(p, style)) draw_x_bar(canvas, axes, p, stroke);
     if (!p.hi || !drawn(p, style)) continue;
     const double lo = std::max(p.lo.value_or(lowest), lowest), hi = std::min(*p.hi, highest);
     const Position low = axes.at(p.x, lo), high = axes.at(p.x, hi);
@@ -209,7 +217,7 @@ std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const
     for (const ChartLine& line : chart.lines) {
       for (const ChartPoint& p : line.points) {
         if (!drawn(p, *style)) continue;
-        x.add(p.x);
+        for (const double at : {p.x, p.x_lo.value_or(p.x), p.x_hi.value_or(p.x)}) x.add(at);
         y.add(p.y);
         powers = powers && power_of_two(p.x);
         for (const auto& end : {p.lo, p.hi}) {

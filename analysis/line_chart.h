@@ -18,6 +18,8 @@ struct ChartPoint {
   double x, y;
   std::optional<double> lo = std::nullopt, hi = std::nullopt;  ///< of the 95 % interval, as far as it is known
   bool hollow = false;                                         ///< its marker
+  std::optional<double> x_lo = std::nullopt,
+                        x_hi = std::nullopt;  ///< of the interval of x, where that is estimated too
 };
 
 struct ChartLine {

@@ -232,11 +232,11 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   figure_app->add_option("--out,-o", figure.out, "FILE.png (288 pixels an inch) or FILE.svg (default: NAME.png)")
       ->type_name("FILE");
   for (const auto& [spelling, help] : std::vector<std::pair<std::string, std::string>>{
-           {"--run", "convergence: the run folder to draw"},
-           {"--scene", "veach, glossy: which scene; convergence: only these scenes"},
-           {"--estimators,--estimator", "veach, glossy: a picture each; convergence: only these"},
-           {"--samplers,--sampler", "a picture, a panel or a line each; convergence: only these"},
-           {"--precision", "convergence: only f32 or f64"},
+           {"--run", "convergence, work-precision: the run folder to draw"},
+           {"--scene", "veach, glossy: which scene; convergence, work-precision: only these"},
+           {"--estimators,--estimator", "veach, glossy: a picture each; convergence, work-precision: only these"},
+           {"--samplers,--sampler", "a picture, a panel or a line each; convergence, work-precision: only these"},
+           {"--precision", "convergence, work-precision: only f32 or f64"},
            {"--samples", "N a pixel, or how many points; discrepancy: 16:4096 for powers of two, or a list"},
            {"--resolution", "veach, glossy: WIDTH,HEIGHT of each picture"},
            {"--exposure", "veach, glossy: radiance is multiplied by 2^STOPS (default 0)"},

@@ -127,6 +127,38 @@ std::vector<ConvergenceLine> read_convergence_lines(const std::filesystem::path&
   return lines;
 }
 
+void read_times(const std::filesystem::path& folder, std::vector<ConvergenceLine>& lines) {
+  const std::filesystem::path path = folder / "timing.csv";
+  if (!std::filesystem::exists(path)) {
+    fail(ExitCode::kBadInput,
+         "{}: there is no timing.csv: run the experiment again with the key `timing`, e.g. --timing 15; what is "
+         "measured "
+         "already is not measured again",
+         folder.string());
+  }
+  const CsvReader table = CsvReader::open(path);
+  for (std::size_t r = 0; r < table.size(); ++r) {
+    ConvergenceLine* line = find_line(lines, table, r);
+    if (!line) continue;
+    const double samples = table.required_number(r, "samples");
+    const auto point = std::ranges::find(line->points, samples, &LinePoint::samples);
+    if (point == line->points.end()) continue;
+    const auto seconds = [&](const char* column) { return samples * 1e-9 * table.required_number(r, column); };
+    point->seconds = seconds("ns_per_sample");
+    point->seconds_lo = seconds("ns_lo");
+    point->seconds_hi = seconds("ns_hi");
+    if (!(*point->seconds_lo > 0)) {
+      fail(ExitCode::kBadInput, "{}: column 'ns_lo': found {}; a positive number is allowed", path.string(),
+           table.text(r, "ns_lo"));
+    }
+  }
+  for (ConvergenceLine& line : lines) {
+    const std::size_t untimed = std::erase_if(line.points, [](const LinePoint& p) { return !p.seconds; });
+    line.left_out += untimed;
+    if (untimed > 0 && line.status.empty()) line.status = "not timed";
+  }
+}
+
 std::string run_name(const std::filesystem::path& folder) {
   std::error_code ignored;
   const std::filesystem::path whole = std::filesystem::weakly_canonical(folder, ignored);

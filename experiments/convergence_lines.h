@@ -20,6 +20,8 @@ struct LinePoint {
   double samples, rmse;
   std::optional<double> lo, hi;  ///< of the 95 % interval, as far as the table has it
   bool certified;                ///< its status is `ok` or `deterministic`
+  /// An integral takes, and the ends of the interval; from timing.csv, by read_times().
+  std::optional<double> seconds = std::nullopt, seconds_lo = std::nullopt, seconds_hi = std::nullopt;
 };
 
 struct ConvergenceLine {
@@ -37,6 +39,10 @@ struct ConvergenceLine {
 /// are kept. Throws Error(kBadInput) that says what to do where the folder has no table, the table is broken, or the
 /// filter leaves nothing.
 std::vector<ConvergenceLine> read_convergence_lines(const std::filesystem::path& run_folder, const LineFilter& filter);
+
+/// Adds what timing.csv says to the lines' points; a point that it does not have is left out and counted so. Error
+/// (kBadInput) where the folder has no timing.csv, or a broken one.
+void read_times(const std::filesystem::path& run_folder, std::vector<ConvergenceLine>& lines);
 
 /// The `name` in a run folder's manifest.json, or the folder's own where there is none to read.
 std::string run_name(const std::filesystem::path& run_folder);

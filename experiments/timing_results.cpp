@@ -55,19 +55,38 @@ std::optional<EqualWork> ask(const Group& group, Ask question, double at) {
   return answered ? std::optional(std::move(work)) : std::nullopt;
 }
 
-/// `first` over the curves' last points gives the number to begin with, and `step` leads to the next.
-template <class First>
-std::vector<EqualWork> ask_all(const std::vector<TimingResult>& rows, Ask question, const First& first, double step) {
+/// The time that the fastest of the lines with the group's largest N takes for it.
+std::optional<double> common_time(const Group& group) {
+  double samples = 0, seconds = 0;
+  for (const WorkCurve& curve : group.curves) {
+    if (curve.points().empty()) continue;
+    const WorkPoint& last = curve.points().back();
+    if (last.samples > samples || (last.samples == samples && last.seconds.value < seconds))
+      samples = last.samples, seconds = last.seconds.value;
+  }
+  return samples > 0 ? std::optional(seconds) : std::nullopt;
+}
+
+/// The median of the lines' errors after that time; of an even number the smaller of the middle two.
+std::optional<double> common_error(const Group& group) {
+  const auto seconds = common_time(group);
+  if (!seconds) return std::nullopt;
+  std::vector<double> errors;
+  for (const WorkCurve& curve : group.curves) {
+    if (const WorkAnswer answer = curve.error_after(*seconds); answer.reach == Reach::kInside)
+      errors.push_back(answer.value.value);
+  }
+  std::ranges::sort(errors);
+  return errors[(errors.size() - 1) / 2];
+}
+
+std::vector<EqualWork> ask_all(const std::vector<TimingResult>& rows, Ask question,
+                               std::optional<double> (*first)(const Group&), double step) {
   std::vector<EqualWork> answers;
   for (const Group& group : groups_of(rows)) {
-    std::vector<WorkPoint> last;
-    for (const WorkCurve& curve : group.curves) {
-      if (!curve.points().empty()) last.push_back(curve.points().back());
-    }
-    if (last.empty()) continue;
-    double at = first(last);
-    for (int k = 0; k <= kFurther; ++k, at *= step) {
-      if (auto work = ask(group, question, at)) answers.push_back(std::move(*work));
+    std::optional<double> at = first(group);
+    for (int k = 0; at && k <= kFurther; ++k, *at *= step) {
+      if (auto work = ask(group, question, *at)) answers.push_back(std::move(*work));
     }
   }
   return answers;
@@ -106,17 +125,11 @@ std::vector<TimingResult> timing_results(const Results& results, std::vector<Cel
 }
 
 std::vector<EqualWork> equal_times(const std::vector<TimingResult>& rows) {
-  const auto fastest = [](const std::vector<WorkPoint>& last) {
-    return std::ranges::min(last, {}, [](const WorkPoint& p) { return p.seconds.value; }).seconds.value;
-  };
-  return ask_all(rows, &WorkCurve::error_after, fastest, 0.25);
+  return ask_all(rows, &WorkCurve::error_after, common_time, 0.25);
 }
 
 std::vector<EqualWork> equal_errors(const std::vector<TimingResult>& rows) {
-  const auto worst = [](const std::vector<WorkPoint>& last) {
-    return std::ranges::max(last, {}, [](const WorkPoint& p) { return p.rmse.value; }).rmse.value;
-  };
-  return ask_all(rows, &WorkCurve::time_until, worst, 2);
+  return ask_all(rows, &WorkCurve::time_until, common_error, 2);
 }
 
 }  // namespace halfslope

@@ -41,12 +41,12 @@ struct EqualWork {
   std::vector<LineAnswer> lines;
 };
 
-/// Errors after equal times: the time t that the fastest line takes at its largest N, which is the longest one that no
-/// line has to be extrapolated to, and t/4 and t/16 where some line has an answer. By scene and precision, t first.
+/// Errors after equal times: the time t that the fastest line takes for the largest N, the longest to which no line
+/// with that N has to be extrapolated, and t/4 and t/16 where some line has an answer. By scene and precision, t first.
 std::vector<EqualWork> equal_times(const std::vector<TimingResult>& rows);
 
-/// Times to equal errors: the largest of the errors that the lines have at their largest N, which all of them reach,
-/// and twice and four times that where some line has an answer.
+/// Times to equal errors: the median e of the lines' errors after t, which half of them have reached then, and 2e and
+/// 4e where some line has an answer. e first.
 std::vector<EqualWork> equal_errors(const std::vector<TimingResult>& rows);
 
 }  // namespace halfslope

@@ -119,9 +119,9 @@ std::string timing_summary(const std::vector<TimingResult>& rows) {
     const EqualWork* times = find_first(at_errors, name);
     if (!errors || !times) continue;
     text += fmt::format(
-        "\n{}, {}: rmse after {} an integral, the fastest line's time at its largest N, and time to an "
-        "rmse of {:.3g}\n\n{}",
-        name.scene, name.precision, time_text(errors->at), times->at, equal_table(*errors, *times));
+        "\n{}, {}: rmse after {} an integral, the shortest time that N = {} takes, and time to an rmse of "
+        "{:.3g}, the median after that time\n\n{}",
+        name.scene, name.precision, time_text(errors->at), name.samples, times->at, equal_table(*errors, *times));
   }
   return text;
 }

@@ -80,18 +80,4 @@ std::string equal_error_csv(const std::vector<TimingResult>& rows) {
                                         "seconds_lo", "seconds_hi", "status"});
 }
 
-std::map<std::string, std::string> timing_texts(const std::vector<TimingResult>& rows, const std::string& experiment) {
-  return {{"timing.csv", timing_csv(rows)},
-          {"timing_parts.csv", timing_parts_csv(rows)},
-          {"equal_time.csv", equal_time_csv(rows)},
-          {"equal_error.csv", equal_error_csv(rows)},
-          {"timing.json", timing_json(rows, experiment)}};
-}
-
-std::vector<std::string> timing_files() {
-  std::vector<std::string> names;
-  for (const auto& [name, text] : timing_texts({}, "")) names.push_back(name);
-  return names;
-}
-
 }  // namespace halfslope

@@ -1,7 +1,7 @@
 // The files of a run folder that tell of time, as text, and what a person sees of them.
 #pragma once
 
-#include <map>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -19,9 +19,9 @@ std::string equal_error_csv(const std::vector<TimingResult>& rows);
 /// of one integral; times in ns), with counters rmse, ns_per_sample and efficiency, so that its tools compare two runs.
 std::string timing_json(const std::vector<TimingResult>& rows, const std::string& experiment);
 
-/// The files by name, and their text.
-std::vector<std::string> timing_files();
-std::map<std::string, std::string> timing_texts(const std::vector<TimingResult>& rows, const std::string& experiment);
+/// The files that hold these texts.
+inline constexpr std::array<const char*, 5> kTimingFiles = {"timing.csv", "timing_parts.csv", "equal_time.csv",
+                                                            "equal_error.csv", "timing.json"};
 
 /// Of each scene and precision, what the lines cost at the largest N, by efficiency, and what each reaches in equal
 /// time and for equal error. Places in the ranking are ranges where intervals overlap. Empty where nothing was timed.
