@@ -38,7 +38,7 @@ Axis log_x_axis(const Range& range, bool powers_of_two, const std::string& label
   const double pad = range.hi > range.lo ? std::pow(range.hi / range.lo, 0.05) : 2;
   Axis axis{{true, range.lo / pad, range.hi * pad}, {}, label};
   axis.ticks = log_ticks(axis.scale.lo, axis.scale.hi, powers_of_two && range.hi > range.lo ? 2 : 10, 6);
-  if (axis.scale.hi < 20000) {  // short enough to be written out
+  if (axis.scale.lo > 1e-3 && axis.scale.hi < 20000) {  // short enough to be written out
     for (Tick& tick : axis.ticks) {
       if (!tick.label.empty()) tick.label = format_number(std::round(tick.value * 1e6) / 1e6);
     }

@@ -107,7 +107,12 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
         {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""},
         {"equal",
          "both sides of a comparison have the same squared errors, replicate by replicate: there is nothing to tell",
-         "", ""}};
+         "", ""},
+        {"few-repetitions", "fewer than 6 timings: their range covers the median with less than 95 %", "", ""},
+        {"below-range", "equal time or error: the line's smallest N takes longer already, or errs less already", "",
+         ""},
+        {"above-range", "equal time or error: the line's largest N takes less, or errs more still", "", ""},
+        {"uncertified", "equal time or error: read off between cells whose intervals are not certified", "", ""}};
   }
   return rows;
 }

@@ -30,6 +30,9 @@ std::string host_name() {
   return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
+// A path need not be UTF-8.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 /// Slashes separate the name's parts, so those of a scene's path are kept out of it.
 std::string benchmark_name(const CellName& name) {
   std::string scene = name.scene;
@@ -64,17 +67,17 @@ Json entry(const TimingResult& row, std::size_t family, std::size_t repetition) 
 }  // namespace
 
 std::string timing_json(const std::vector<TimingResult>& rows, const std::string& experiment) {
-  Json json;
-  json["context"] = {{"date", local_time()},           {"host_name", host_name()},
-                     {"executable", "halfslope run"},  {"num_cpus", std::thread::hardware_concurrency()},
-                     {"caches", Json::array()},        {"experiment", experiment},
-                     {"halfslope_version", version()}, {"isa", to_string(active_isa())}};
-  json["benchmarks"] = Json::array();
+  const Json context = {{"date", local_time()},           {"host_name", host_name()},
+                        {"executable", "halfslope run"},  {"num_cpus", std::thread::hardware_concurrency()},
+                        {"caches", Json::array()},        {"experiment", experiment},
+                        {"halfslope_version", version()}, {"isa", to_string(active_isa())}};
+  // Many runs make a long file, so an entry is a line.
+  std::string entries;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     for (std::size_t repetition = 0; repetition < rows[r].times.runs.size(); ++repetition)
-      json["benchmarks"].push_back(entry(rows[r], r, repetition));
+      entries += (entries.empty() ? "\n" : ",\n") + text_of(entry(rows[r], r, repetition));
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return fmt::format("{{\n\"context\": {},\n\"benchmarks\": [{}\n]\n}}\n", text_of(context), entries);
 }
 
 }  // namespace halfslope

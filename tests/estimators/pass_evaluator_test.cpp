@@ -1,9 +1,12 @@
 #include "estimators/pass_evaluator.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scenes/catalogue.h"
@@ -125,6 +128,46 @@ TYPED_TEST(PassEvaluatorOf, CountsAreSeparateSamples) {
     const auto values = estimate<TypeParam>(*toy, 0, {.estimator = name, .rounds = 1, .replicates = 1 << 16})[0];
     const double error = mean_of(values).standard_error;
     EXPECT_NEAR(error * error * (1 << 16) * 48 * k, 1, 6 * std::sqrt(2.0 / (1 << 16))) << name;
+  }
+}
+
+/// Independent points that keep a record of what was asked of them.
+class RecordingSampler final : public Sampler {
+ public:
+  RecordingSampler(bool sequence, std::vector<std::string>& record)
+      : points_(SamplerCatalogue::built_in().make("independent")), info_(points_->info()), record_(record) {
+    info_.sequence = sequence;
+  }
+  const SamplerInfo& info() const override { return info_; }
+  void prepare(const PointRequest& r) override {
+    record_.push_back(fmt::format("{} points of {}, {}, {}", r.count, r.pixel, r.replicate, r.low_words));
+    points_->prepare(r);
+  }
+  void fill(std::uint64_t begin, PointBlock& block) override {
+    record_.push_back(fmt::format("{} from {}, {}", block.samples(), begin, block.dims()));
+    points_->fill(begin, block);
+  }
+
+ private:
+  std::unique_ptr<Sampler> points_;
+  SamplerInfo info_;
+  std::vector<std::string>& record_;
+};
+
+TYPED_TEST(PassEvaluatorOf, PointsAloneAreThoseOfARun) {
+  const auto toy = make_analytic_scene("mis-toy");
+  const Estimator estimator = parse_estimator("balance", toy->techniques());
+  for (const bool sequence : {true, false}) {
+    std::vector<std::string> record;
+    PassEvaluator<TypeParam> evaluator(std::make_unique<RecordingSampler>(sequence, record), toy->techniques(),
+                                       estimator.allocation, {estimator.heuristic}, {70}, toy->channels());
+    const PixelIntegral pixel = toy->pixel(0);
+    const StreamKey key = stream_key(1, "independent", "test");
+    evaluator.run(*pixel.integral, key, 5, 32);
+    const std::vector<std::string> run = std::exchange(record, {});
+    evaluator.make_points(key, 5, 32);
+    EXPECT_EQ(record, run);
+    EXPECT_EQ(run.size(), 1u + 3);  // 70 points in blocks of 32
   }
 }
 

@@ -202,6 +202,42 @@ TEST_F(ConvergenceFigure, ABrokenRunFolderIsBadInputWithWhatToDo) {
   EXPECT_THAT(missing.err, HasSubstr("--run is missing"));
 }
 
+// The same points, N · ns · 1e-9 seconds to the right, with bars both ways.
+TEST_F(ConvergenceFigure, WorkPrecisionStandsOverTime) {
+  const std::string run = write_run({{"mean", "a", 4, 0.5, 0.4, 0.7}, {"mean", "a", 64, 0.1, 0.08, 0.12}});
+  const auto refused = [&] {
+    const Ended ended = command({"figure", "work-precision", "--run", run, "-o", (folder_ / "x.svg").string()});
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    return ended.err;
+  };
+  EXPECT_THAT(refused(), HasSubstr("there is no timing.csv: run the experiment again with the key `timing`"));
+  const std::string head = "scene,estimator,sampler,precision,samples,ns_per_sample,ns_lo,ns_hi\n";
+  std::ofstream(folder_ / "my run/timing.csv") << head + "\"toy:n=1,k=2\",mean,a,f64,4,50,,60\n";
+  EXPECT_THAT(refused(), HasSubstr("ns_lo"));
+  std::ofstream(folder_ / "my run/timing.csv") << head +
+                                                      "\"toy:n=1,k=2\",mean,a,f64,4,50,40,60\n"
+                                                      "\"toy:n=1,k=2\",mean,a,f64,64,500,400,600\n"
+                                                      "other,mean,a,f64,64,500,400,600\n";
+  const std::string out = (folder_ / "w.svg").string();
+  ASSERT_EQ(command({"figure", "work-precision", "--run", run, "-o", out}).code, 0);
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file(out.c_str()));
+  const LogMap x(place_of(document, "10⁻⁶", true), 1e-6, place_of(document, "10⁻⁵", true), 1e-5);
+  const auto group = document.select_node("//g").node();
+  std::vector<double> seconds;
+  for (const auto& circle : group.children("circle")) seconds.push_back(x.value(circle.attribute("cx").as_double()));
+  ASSERT_EQ(seconds.size(), 2u);
+  EXPECT_NEAR(seconds[0], 2e-7, 2e-10);
+  EXPECT_NEAR(seconds[1], 32e-6, 2e-8);
+  // The line; then of each point a bar along x with two caps, and one along y.
+  std::vector<std::vector<Place>> lines;
+  for (const auto& line : group.children("polyline")) lines.push_back(points_of(line));
+  ASSERT_EQ(lines.size(), 1u + 2 * 6);
+  EXPECT_NEAR(x.value(lines[1][0].x), 1.6e-7, 2e-10);
+  EXPECT_NEAR(x.value(lines[1][1].x), 2.4e-7, 2e-10);
+  EXPECT_THAT(texts(document), Contains("CPU seconds an integral"));
+}
+
 TEST(ConvergencePanels, AreSmallEnoughToRead) {
   std::vector<ConvergenceLine> lines;
   const auto add = [&](const std::string& scene, int estimators, int samplers) {

@@ -171,6 +171,15 @@ TEST(SpecToml, MeasuresAreNamesOfTheCatalogue) {
   EXPECT_THAT(refusal("measures = ''"), HasSubstr("found an empty name"));
 }
 
+TEST(SpecToml, TimingIsANumberOfRepetitions) {
+  EXPECT_EQ(parse_spec_toml(kSmallest, "x").timing, 0);
+  EXPECT_EQ(parse_spec_toml("timing = 15", "x").timing, 15);
+  EXPECT_EQ(parse_spec_toml("timing = 'none'", "x").timing, 0);
+  EXPECT_EQ(with_flag("timing", "3").timing, 3);
+  for (const char* wrong : {"2", "10001", "'fast'", "[15]"})
+    EXPECT_THAT(refusal(std::string("timing = ") + wrong), HasSubstr("an integer from 3 to 10000, the repetitions"));
+}
+
 TEST(SpecToml, NamesMustFitAFolder) {
   EXPECT_THAT(refusal("name = ''"), HasSubstr("empty name"));
   EXPECT_THAT(refusal("name = '../x'"), HasSubstr("found '../x'"));
@@ -294,6 +303,13 @@ TEST(SpecJson, MeasuresLeaveTheRunWhatItIs) {
   Spec spec = parse_spec_toml(kSmallest, "x.toml");
   const std::string without = canonical_json(spec);
   apply_flag(spec, "measures", "star,l2-star");
+  EXPECT_EQ(canonical_json(spec), without);
+}
+
+TEST(SpecJson, TimingLeavesTheRunWhatItIs) {
+  Spec spec = parse_spec_toml(kSmallest, "x.toml");
+  const std::string without = canonical_json(spec);
+  apply_flag(spec, "timing", "15");
   EXPECT_EQ(canonical_json(spec), without);
 }
 
