@@ -1,5 +1,6 @@
 #include "estimators/estimator.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -9,12 +10,14 @@
 
 #include "core/assertion.h"
 #include "core/error.h"
+#include "estimators/one_sample.h"
 
 namespace halfslope {
 namespace {
 
 constexpr int kMostSamples = 64;  // of one round: its terms are held for a whole block
 constexpr int kMostTechniques = 16;
+constexpr std::string_view kOneSample = "one-sample-";
 
 std::vector<std::string> names_of(std::span<const Technique> techniques) {
   std::vector<std::string> names;
@@ -89,9 +92,10 @@ std::string default_techniques(std::span<const Technique> techniques) {
 
 }  // namespace
 
-int Allocation::round() const { return std::accumulate(counts.begin(), counts.end(), 0); }
+int Allocation::round() const { return one_sample ? 1 : std::accumulate(counts.begin(), counts.end(), 0); }
 
 Layout Allocation::layout(std::span<const Technique> catalogue) const {
+  if (one_sample) return shared_layout(techniques, catalogue).layout;
   Layout layout;
   for (std::size_t i = 0; i < techniques.size(); ++i) {
     for (int j = 0; j < counts[i]; ++j) layout.append(catalogue[static_cast<std::size_t>(techniques[i])].layout);
@@ -102,6 +106,7 @@ Layout Allocation::layout(std::span<const Technique> catalogue) const {
 // The menu. To add a heuristic: its kind in estimators/kernels.h, its weight in heuristics.h, its line here (an
 // embedder calls add() with a weight function instead, and touches nothing of ours).
 EstimatorCatalogue EstimatorCatalogue::built_in() {
+  const Parameter kExponent = {"the power heuristic's exponent", 0, std::numeric_limits<double>::max(), 2};
   EstimatorCatalogue catalogue;
   catalogue.entries_ = {
       {{"average", "the plain average of the techniques' estimators, w = 1/n", "Veach & Guibas (1995)"},
@@ -116,7 +121,7 @@ EstimatorCatalogue EstimatorCatalogue::built_in() {
         "Veach & Guibas (1995); Veach (1997), section 9.2.3"},
        "power",
        {HeuristicKind::kPower, 2},
-       Parameter{"the power heuristic's exponent", 0, std::numeric_limits<double>::max(), 2}},
+       kExponent},
       {{"cutoff[:A]", "balance heuristic without techniques whose c_i p_i is below A times the largest (default 0.1)",
         "Veach & Guibas (1995); Veach (1997), section 9.2.3"},
        "cutoff",
@@ -127,6 +132,28 @@ EstimatorCatalogue EstimatorCatalogue::built_in() {
        "maximum",
        {HeuristicKind::kMaximum},
        std::nullopt},
+      {{"optimal", "optimal weights, negative ones allowed, solved for from the samples they weight; biased at small N",
+        "Kondapaneni & others, Optimal multiple importance sampling (2019)"},
+       "optimal",
+       {HeuristicKind::kOptimal},
+       std::nullopt},
+      {{"optimal-progressive",
+        "optimal weights solved for from the samples before, at 8, 16, 32, ... of each technique",
+        "Kondapaneni & others, Optimal multiple importance sampling (2019)"},
+       "optimal-progressive",
+       {HeuristicKind::kOptimalProgressive},
+       std::nullopt},
+      {{"one-sample-balance",
+        "each sample from one technique, chosen with probability c_i / sum c_k, weighted by balance; N counts samples "
+        "(so any heuristic: one-sample-maximum, ...)",
+        "Veach & Guibas (1995); Veach (1997), section 9.2.4"},
+       "one-sample-balance",
+       {HeuristicKind::kBalance},
+       std::nullopt},
+      {{"one-sample-power[:B]", "the same, weighted by power", "Veach & Guibas (1995); Veach (1997), section 9.2.4"},
+       "one-sample-power",
+       {HeuristicKind::kPower, 2},
+       kExponent},
   };
   return catalogue;
 }
@@ -160,29 +187,40 @@ std::vector<EstimatorInfo> EstimatorCatalogue::list() const {
   return list;
 }
 
-Heuristic EstimatorCatalogue::parse_heuristic(const std::string& name, std::string_view text,
-                                              std::span<const Technique> techniques) const {
+const EstimatorCatalogue::Entry* EstimatorCatalogue::find_entry(std::string_view kind) const {
+  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == kind; });
+  return found == entries_.end() ? nullptr : &*found;
+}
+
+void EstimatorCatalogue::parse_heuristic(Estimator& estimator, std::string_view text,
+                                         std::span<const Technique> techniques) const {
+  const std::string& name = estimator.name;
   const auto colon = text.find(':');
   const std::string_view kind = text.substr(0, colon);
-  for (const Entry& entry : entries_) {
-    if (entry.name != kind) continue;
-    if (colon == std::string_view::npos) return entry.heuristic;
-    if (!entry.parameter) fail(ExitCode::kBadInput, "estimator '{}': '{}' takes no parameter", name, kind);
-    const auto& [meaning, least, most, standard] = *entry.parameter;
-    const auto value = parse_number<double>(text.substr(colon + 1));
-    if (!value || !std::isfinite(*value) || *value < least || *value > most) {
-      const bool bounded = most < std::numeric_limits<double>::max();
-      fail(ExitCode::kBadInput, "estimator '{}': {} is a number that is at least {}{}, found '{}'", name, meaning,
-           least, bounded ? fmt::format(" and at most {}", most) : "", text.substr(colon + 1));
-    }
-    Heuristic heuristic = entry.heuristic;
-    heuristic.parameter = *value;
-    return heuristic;
+  const bool one_sample = kind.starts_with(kOneSample);
+  const Entry* entry = find_entry(kind);
+  if (!entry && one_sample) entry = find_entry(kind.substr(kOneSample.size()));
+  if (entry && one_sample && !is_fold(entry->heuristic.kind)) {
+    fail(ExitCode::kBadInput, "estimator '{}': the optimal weights are for samples of every technique", name);
   }
-  auto allowed = names_of(techniques);
-  for (const Entry& entry : entries_) allowed.push_back(entry.name);
-  fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{} (it has {})", kind,
-       did_you_mean(kind, allowed), fmt::join(allowed, ", "));
+  if (!entry) {
+    auto allowed = names_of(techniques);
+    for (const Entry& e : entries_) allowed.push_back(e.name);
+    fail(ExitCode::kBadInput, "there is no estimator '{}' for this scene{} (it has {})", kind,
+         did_you_mean(kind, allowed), fmt::join(allowed, ", "));
+  }
+  estimator.heuristic = entry->heuristic;
+  estimator.allocation.one_sample = one_sample;
+  if (colon == std::string_view::npos) return;
+  if (!entry->parameter) fail(ExitCode::kBadInput, "estimator '{}': '{}' takes no parameter", name, kind);
+  const auto& [meaning, least, most, standard] = *entry->parameter;
+  const auto value = parse_number<double>(text.substr(colon + 1));
+  if (!value || !std::isfinite(*value) || *value < least || *value > most) {
+    const bool bounded = most < std::numeric_limits<double>::max();
+    fail(ExitCode::kBadInput, "estimator '{}': {} is a number that is at least {}{}, found '{}'", name, meaning, least,
+         bounded ? fmt::format(" and at most {}", most) : "", text.substr(colon + 1));
+  }
+  estimator.heuristic.parameter = *value;
 }
 
 Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Technique> techniques) const {
@@ -190,11 +228,16 @@ Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Tec
   const auto at = name.find('@');
   Estimator estimator;
   estimator.name = name;
-  estimator.heuristic = parse_heuristic(name, std::string_view(name).substr(0, at), techniques);
+  parse_heuristic(estimator, std::string_view(name).substr(0, at), techniques);
+  const bool one_sample = estimator.allocation.one_sample;
   const std::string list = at == std::string::npos ? default_techniques(techniques) : name.substr(at + 1);
   estimator.allocation = parse_allocation(name, list, techniques);
-  // Every heuristic weights a lone technique by 1.
-  if (estimator.allocation.techniques.size() == 1) estimator.heuristic = {};
+  estimator.allocation.one_sample = one_sample;
+  // Every heuristic weights a lone technique by 1, and leaves no choice.
+  if (estimator.allocation.techniques.size() == 1) {
+    estimator.heuristic = {};
+    if (one_sample) estimator.allocation = {estimator.allocation.techniques, {1}};
+  }
   return estimator;
 }
 

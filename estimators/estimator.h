@@ -18,10 +18,13 @@ namespace halfslope {
 struct Allocation {
   std::vector<int> techniques;
   std::vector<int> counts;
+  /// A round is one sample, of technique i with probability counts[i] / Σ counts.
+  bool one_sample = false;
 
   /// Samples of one round: N is a multiple of it.
   int round() const;
-  /// The dimensions of the point that drives one round: each technique's layout, `counts` times, in order.
+  /// The dimensions of the point that drives one round: each technique's layout, `counts` times, in order; of one
+  /// sample the choice, then what the techniques share (estimators/one_sample.h).
   Layout layout(std::span<const Technique> catalogue) const;
   bool operator==(const Allocation&) const = default;
 };
@@ -37,7 +40,9 @@ struct EstimatorInfo {
   std::string name, description, reference;
 };
 
-/// The heuristics that estimators' names begin with. Embedders add their own before they call the command line.
+/// The heuristics that estimators' names begin with, each over samples of every technique or, as
+/// one-sample-HEURISTIC, over one of a technique chosen at random (the optimal ones excepted). Embedders add their own
+/// before they call the command line.
 class EstimatorCatalogue {
  public:
   static EstimatorCatalogue built_in();
@@ -48,8 +53,9 @@ class EstimatorCatalogue {
   void add(EstimatorInfo info, WeightFunction weight);
   /// Techniques first, then heuristics in the order they were added.
   std::vector<EstimatorInfo> list() const;
-  /// HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+…], e.g. "balance@light+bsdf", "power:3@light*3+bsdf"; without '@' over
-  /// light+bsdf, or over all techniques of a scene that lacks those two. The name of a technique alone is that
+  /// HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+…], e.g. "balance@light+bsdf", "power:3@light*3+bsdf", or
+  /// "one-sample-balance@light*3+bsdf", which draws from light with probability 3/4; without '@' over light+bsdf, or
+  /// over all techniques of a scene that lacks those two. The name of a technique alone is that
   /// technique's own estimator. Throws Error(kBadInput) that says what is wrong and what the scene offers.
   Estimator parse(const std::string& name, std::span<const Technique> techniques) const;
 
@@ -65,8 +71,9 @@ class EstimatorCatalogue {
     Heuristic heuristic;
     std::optional<Parameter> parameter;
   };
-  Heuristic parse_heuristic(const std::string& name, std::string_view text,
-                            std::span<const Technique> techniques) const;
+  const Entry* find_entry(std::string_view kind) const;
+  /// Sets the heuristic, and whether it takes one sample a round.
+  void parse_heuristic(Estimator& estimator, std::string_view text, std::span<const Technique> techniques) const;
 
   std::vector<Entry> entries_;
 };

@@ -149,6 +149,9 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
     }
     case HeuristicKind::kCustom:
       return custom_weight(heuristic.custom, ratios, techniques, i);
+    case HeuristicKind::kOptimal:
+    case HeuristicKind::kOptimalProgressive:
+      break;  // no folds
   }
   return F(T(0));
 }

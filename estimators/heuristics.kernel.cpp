@@ -86,6 +86,7 @@ void fold(const FoldCall<T>& call) {
     ratios_in_place(call, Count<0>{call.techniques});
   }
   weigh_all(call);
+  if (call.regression) regress(call);
 }
 template void fold<float>(const FoldCall<float>&);
 template void fold<double>(const FoldCall<double>&);

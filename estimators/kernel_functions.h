@@ -13,6 +13,9 @@ template <class T>
 void sample_direction(const LightingCall<T>& call);
 template <class T>
 void fold(const FoldCall<T>& call);
+/// The part of `fold` that fills call.regression, from the densities' ratios.
+template <class T>
+void regress(const FoldCall<T>& call);
 template <class T>
 void accumulate(const T* const* values, int outputs, int samples, double* sums, double* compensations);
 

@@ -23,8 +23,23 @@ struct LightingCall {
   T* const* pdfs;  ///< kLightingTechniques of them
 };
 
-/// How the terms of a round are weighted; see estimators/heuristics.h.
-enum class HeuristicKind : std::uint8_t { kSingle, kAverage, kBalance, kPower, kCutoff, kMaximum, kCustom };
+/// How the terms of a round are weighted: a fold of them by estimators/heuristics.h, or by estimators/optimal.h, whose
+/// weights are not known before many rounds are.
+enum class HeuristicKind : std::uint8_t {
+  kSingle,
+  kAverage,
+  kBalance,
+  kPower,
+  kCutoff,
+  kMaximum,
+  kCustom,
+  kOptimal,
+  kOptimalProgressive
+};
+/// Whether the heuristic is a fold of a round's terms, with weights that are nowhere negative.
+constexpr bool is_fold(HeuristicKind kind) {
+  return kind != HeuristicKind::kOptimal && kind != HeuristicKind::kOptimalProgressive;
+}
 
 /// The weight in [0, 1] of technique i, from the ratios r_k = c_k p_k / max_l c_l p_l of all `techniques` (where every
 /// density is 0, all ratios are equal). Equal densities may differ by rounding, and not the same way at each
@@ -44,11 +59,14 @@ struct FoldCall {
   T* terms;  ///< densities are overwritten: with c_k p_k over the largest of them
   std::size_t stride, count;
   int slots, channels, techniques;
-  const int* slot_technique;  ///< which technique of the set each slot draws
-  const T* counts;            ///< samples of each technique in a round
-  const Heuristic* heuristics;
+  const int* slot_technique;    ///< which technique of the set each slot draws
+  const T* counts;              ///< samples of each technique in a round
+  const Heuristic* heuristics;  ///< folds all
   int heuristic_count;
   T* const* out;
+  /// Where not null, it receives what estimators/optimal.h adds up, each point's sums over its round: w_i w_j for
+  /// i ≥ j, row by row, then y w_i for each channel of y, the balance heuristic's weights w and contribution y.
+  T* const* regression = nullptr;
 };
 
 /// Adds `samples` rows of kLanes values of each output to its lanes' compensated sums (kLanes numbers an output).

@@ -1,6 +1,7 @@
 #include "estimators/pass_evaluator.h"
 
 #include <algorithm>
+#include <numeric>
 #include <type_traits>
 
 #include "core/kernel_library.h"
@@ -24,22 +25,36 @@ PassEvaluator<T>::PassEvaluator(std::unique_ptr<Sampler> sampler, std::span<cons
       channels_(channels),
       layout_(allocation_.layout(techniques)),
       kernels_(kernels<EstimatorKernels>()) {
-  int dim = 0;
-  for (std::size_t i = 0; i < allocation_.techniques.size(); ++i) {
-    const int technique = allocation_.techniques[i];
-    for (int j = 0; j < allocation_.counts[i]; ++j) {
-      calls_.push_back({technique, dim, static_cast<int>(calls_.size()), allocation_.techniques});
-      slot_technique_.push_back(static_cast<int>(i));
-      dim += techniques[static_cast<std::size_t>(technique)].layout.dims();
+  for (const int count : allocation_.counts) counts_.push_back(static_cast<T>(count));
+  if (allocation_.one_sample) {
+    one_sample_.emplace(allocation_, techniques);
+    for (std::size_t i = 0; i < counts_.size(); ++i) slot_technique_.push_back(static_cast<int>(i));
+  } else {
+    int dim = 0;
+    for (std::size_t i = 0; i < allocation_.techniques.size(); ++i) {
+      const int technique = allocation_.techniques[i];
+      for (int j = 0; j < allocation_.counts[i]; ++j) {
+        calls_.push_back({technique, dim, static_cast<int>(calls_.size()), allocation_.techniques});
+        slot_technique_.push_back(static_cast<int>(i));
+        dim += techniques[static_cast<std::size_t>(technique)].layout.dims();
+      }
     }
-    counts_.push_back(static_cast<T>(allocation_.counts[i]));
   }
-  const std::size_t outputs = heuristics_.size() * static_cast<std::size_t>(channels_);
+  for (const Heuristic& heuristic : heuristics_) {
+    if (is_fold(heuristic.kind)) folds_.push_back(heuristic);
+    progressive_ |= heuristic.kind == HeuristicKind::kOptimalProgressive;
+  }
+  std::size_t outputs = folds_.size() * static_cast<std::size_t>(channels_);
+  if (folds_.size() < heuristics_.size()) {
+    optimal_.emplace(allocation_.counts, channels_, OptimalSolver::tolerance(std::is_same_v<T, float>));
+    outputs += optimal_->sums();
+    totals_.resize(optimal_->sums() * kLanes);
+  }
   values_.resize(outputs * kBlock * kLanes);
   for (std::size_t o = 0; o < outputs; ++o) outputs_.push_back(values_.data() + o * kBlock * kLanes);
   sums_.resize(outputs * kLanes);
   compensations_.resize(outputs * kLanes);
-  estimates_.resize(outputs * rounds_.size() * kLanes);
+  estimates_.resize(heuristics_.size() * static_cast<std::size_t>(channels_) * rounds_.size() * kLanes);
 }
 
 template <class T>
@@ -60,10 +75,22 @@ void PassEvaluator<T>::run(const Integral& integral, StreamKey key, std::uint32_
       clear();
       done = 0;
     }
-    sum_points(integral, done, rounds_[n]);
+    sum_to(integral, done, rounds_[n]);
     done = rounds_[n];
     report(n);
   }
+}
+
+// Stops where the optimal weights are solved anew.
+template <class T>
+void PassEvaluator<T>::sum_to(const Integral& integral, std::uint64_t begin, std::uint64_t end) {
+  while (progressive_ && optimal_->next_update(begin) <= end) {
+    const std::uint64_t update = optimal_->next_update(begin);
+    sum_points(integral, begin, update);
+    optimal_->update(regression_totals(), update);
+    begin = update;
+  }
+  sum_points(integral, begin, end);
 }
 
 template <class T>
@@ -84,6 +111,15 @@ template <class T>
 void PassEvaluator<T>::clear() {
   std::fill_n(sums_.data(), sums_.size(), 0.0);
   std::fill_n(compensations_.data(), compensations_.size(), 0.0);
+  if (optimal_) optimal_->clear();
+}
+
+template <class T>
+void PassEvaluator<T>::draw(const Integral& integral) {
+  terms_.reset(static_cast<int>(slot_technique_.size()), channels_, static_cast<int>(allocation_.techniques.size()),
+               points_.samples());
+  if (one_sample_) one_sample_->sample(integral, points_, terms_);
+  for (const TechniqueCall& call : calls_) integral.sample(call, points_, terms_);
 }
 
 template <class T>
@@ -92,19 +128,20 @@ void PassEvaluator<T>::sum_points(const Integral& integral, std::uint64_t begin,
     const int samples = static_cast<int>(std::min(kBlock, end - first));
     points_.reset(layout_.dims(), samples, std::is_same_v<T, double>);
     sampler_->fill(first, points_);
-    terms_.reset(static_cast<int>(calls_.size()), channels_, static_cast<int>(allocation_.techniques.size()), samples);
-    for (const TechniqueCall& call : calls_) integral.sample(call, points_, terms_);
-    const FoldCall<T> fold = {terms_.data(),
-                              terms_.stride(),
-                              points_.stride(),
-                              static_cast<int>(calls_.size()),
-                              channels_,
-                              static_cast<int>(allocation_.techniques.size()),
-                              slot_technique_.data(),
-                              counts_.data(),
-                              heuristics_.data(),
-                              static_cast<int>(heuristics_.size()),
-                              outputs_.data()};
+    draw(integral);
+    const FoldCall<T> fold = {
+        terms_.data(),
+        terms_.stride(),
+        points_.stride(),
+        static_cast<int>(slot_technique_.size()),
+        channels_,
+        static_cast<int>(allocation_.techniques.size()),
+        slot_technique_.data(),
+        counts_.data(),
+        folds_.data(),
+        static_cast<int>(folds_.size()),
+        outputs_.data(),
+        optimal_ ? outputs_.data() + folds_.size() * static_cast<std::size_t>(channels_) : nullptr};
     if constexpr (std::is_same_v<T, float>) {
       kernels_.fold_f32(fold);
     } else {
@@ -120,14 +157,27 @@ void PassEvaluator<T>::sum_points(const Integral& integral, std::uint64_t begin,
 }
 
 template <class T>
+std::span<const double> PassEvaluator<T>::regression_totals() {
+  const std::size_t first = sums_.size() - totals_.size();
+  for (std::size_t i = 0; i < totals_.size(); ++i) totals_[i] = sums_[first + i] - compensations_[first + i];
+  return totals_;
+}
+
+template <class T>
 void PassEvaluator<T>::report(std::size_t n) {
   const auto rounds = static_cast<double>(rounds_[n]);
+  // A fold's weights are over counts; one sample's over probabilities, which are those divided by their sum.
+  const double scale = allocation_.one_sample ? std::accumulate(counts_.begin(), counts_.end(), 0.0) : 1;
+  std::size_t fold = 0;
   for (std::size_t h = 0; h < heuristics_.size(); ++h) {
-    for (int c = 0; c < channels_; ++c) {
-      const std::size_t o = h * static_cast<std::size_t>(channels_) + static_cast<std::size_t>(c);
-      double* out = const_cast<double*>(estimates(h, n, c));
-      for (std::size_t l = 0; l < kLanes; ++l)
-        out[l] = (sums_[o * kLanes + l] - compensations_[o * kLanes + l]) / rounds;
+    double* out = const_cast<double*>(estimates(h, n, 0));
+    if (heuristics_[h].kind == HeuristicKind::kOptimal) {
+      optimal_->direct(regression_totals(), rounds_[n], out);
+    } else if (heuristics_[h].kind == HeuristicKind::kOptimalProgressive) {
+      optimal_->progressive(regression_totals(), rounds_[n], out);
+    } else {
+      const std::size_t lanes = static_cast<std::size_t>(channels_) * kLanes, first = fold++ * lanes;
+      for (std::size_t l = 0; l < lanes; ++l) out[l] = (sums_[first + l] - compensations_[first + l]) / rounds * scale;
     }
   }
 }

@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/integral.h"
 #include "estimators/estimator.h"
 #include "estimators/kernels.h"
+#include "estimators/one_sample.h"
+#include "estimators/optimal.h"
 #include "samplers/sampler.h"
 
 namespace halfslope {
@@ -35,13 +38,16 @@ class PassEvaluator {
   void make_points(StreamKey key, std::uint32_t pixel, std::uint32_t replicate);
 
  private:
+  void sum_to(const Integral& integral, std::uint64_t begin, std::uint64_t end);
   void sum_points(const Integral& integral, std::uint64_t begin, std::uint64_t end);
+  void draw(const Integral& integral);
+  std::span<const double> regression_totals();
   void report(std::size_t n);
   void clear();
 
   std::unique_ptr<Sampler> sampler_;
   Allocation allocation_;
-  std::vector<Heuristic> heuristics_;
+  std::vector<Heuristic> heuristics_, folds_;  ///< all, and those that are folds
   std::vector<std::uint64_t> rounds_;
   int channels_;
   Layout layout_;
@@ -54,6 +60,10 @@ class PassEvaluator {
   std::vector<T*> outputs_;
   AlignedBuffer<double> sums_, compensations_;
   std::vector<double> estimates_;
+  std::optional<OneSample<T>> one_sample_;  ///< where the allocation is
+  std::optional<OptimalSolver> optimal_;    ///< where some heuristic is no fold
+  bool progressive_ = false;                ///< whether one is solved on the way
+  std::vector<double> totals_;              ///< of the regression
   const EstimatorKernels& kernels_;
 };
 
