@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -40,6 +41,14 @@ class Integral {
 
 using Color = std::array<double, 3>;
 
+/// An integral in one variable x for quadrature: what its techniques' exact variances are computed from.
+struct ExactDensities {
+  /// Ascending, the domain's ends among them: f and every density are smooth between, and no peak lies far from one.
+  std::vector<double> breaks;
+  /// f at x, inside an interval of them; pdfs[t] receives the density of technique t of the source.
+  std::function<double(double x, std::span<double> pdfs)> evaluate;
+};
+
 /// A pixel as an integral: `constant` is what is known without sampling (an emitter seen directly, background), and
 /// `integral` is null where nothing else is to be added.
 struct PixelIntegral {
@@ -70,6 +79,8 @@ class IntegralSource {
   virtual std::optional<double> variance() const { return std::nullopt; }
   /// How smooth f is at a uniform point, of a scene whose only technique draws one.
   virtual Regularity regularity() const { return Regularity::kSquareIntegrable; }
+  /// f and the densities of techniques(), of a scene of one integral that can be said in one variable.
+  virtual std::optional<ExactDensities> exact_densities() const { return std::nullopt; }
   /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
   virtual std::vector<std::string> regions() const { return {}; }
   virtual int region(int /*pixel*/) const { return 0; }

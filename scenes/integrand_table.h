@@ -15,10 +15,11 @@ namespace halfslope {
 struct Integrand {
   std::string kernel;  ///< its formula's name; empty: the row's
   int dims = 2;
-  std::vector<double> parameters;       ///< of the kernel
-  double integral = 0;                  ///< ∫ f over [0,1]^d
-  std::optional<double> variance;       ///< of f at a uniform point; infinity where E f² is
-  std::vector<Technique> techniques{};  ///< empty: `mean`, with pairs of dimensions
+  std::vector<double> parameters;         ///< of the kernel
+  double integral = 0;                    ///< ∫ f over [0,1]^d
+  std::optional<double> variance;         ///< of f at a uniform point; infinity where E f² is
+  std::vector<Technique> techniques{};    ///< empty: `mean`, with pairs of dimensions
+  std::optional<ExactDensities> exact{};  ///< of the techniques
   Regularity regularity = Regularity::kSquareIntegrable;
 };
 
