@@ -1,8 +1,11 @@
 #include "estimators/exact_variance.h"
 
 #include <Eigen/QR>
+#include <algorithm>
 #include <array>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
+#include <cmath>
+#include <vector>
 
 #include "estimators/heuristics.h"
 
@@ -27,20 +30,55 @@ class Quadrature {
   std::size_t techniques() const { return n_; }
   double count(std::size_t k) const { return estimator_.allocation.counts[k]; }
 
+  /// Adaptive, to an error that is small beside the integral of an integrand that is nowhere negative.
   template <class Value>
   double integrate(const Value& value) const {
-    // A jump inside an interval is bisected so often; where only rounding is left to be seen, it ends there too.
-    constexpr unsigned kDepth = 14;
-    constexpr double kTolerance = 1e-10;
-    double sum = 0;
+    std::vector<Piece> pieces;
+    double total = 0;
     for (std::size_t i = 0; i + 1 < densities_.breaks.size(); ++i) {
-      sum += boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
-          [&](double x) { return value(at(x)); }, densities_.breaks[i], densities_.breaks[i + 1], kDepth, kTolerance);
+      // Weights may jump close to where a density has its peak: intervals halve towards both ends.
+      const double begin = densities_.breaks[i], end = densities_.breaks[i + 1], half = (end - begin) / 2;
+      constexpr int kHalvings = 24;
+      double inner = 0;
+      for (int k = kHalvings; k >= 0; --k) {
+        const double outer = std::ldexp(half, -k);
+        pieces.push_back(piece(value, begin + inner, begin + outer));
+        pieces.push_back(piece(value, end - outer, end - inner));
+        inner = outer;
+      }
     }
+    for (const Piece& p : pieces) total += std::fabs(p.integral);
+    // A jump takes some thirty; where only rounding is left to be seen there is no end to refine to.
+    constexpr int kMostHalvings = 1000;
+    constexpr double kTolerance = 1e-10;
+    const auto less = [](const Piece& p, const Piece& q) { return p.error < q.error; };
+    std::make_heap(pieces.begin(), pieces.end(), less);
+    for (int h = 0; h < kMostHalvings && pieces.front().error > kTolerance * total; ++h) {
+      std::pop_heap(pieces.begin(), pieces.end(), less);
+      const Piece worst = pieces.back();
+      const double middle = worst.begin + (worst.end - worst.begin) / 2;
+      pieces.back() = piece(value, worst.begin, middle);
+      std::push_heap(pieces.begin(), pieces.end(), less);
+      pieces.push_back(piece(value, middle, worst.end));
+      std::push_heap(pieces.begin(), pieces.end(), less);
+    }
+    double sum = 0;
+    for (const Piece& p : pieces) sum += p.integral;
     return sum;
   }
 
  private:
+  struct Piece {
+    double begin, end, integral, error;
+  };
+  template <class Value>
+  Piece piece(const Value& value, double begin, double end) const {
+    double error = 0;
+    const double integral = boost::math::quadrature::gauss_kronrod<double, 31>::integrate(
+        [&](double x) { return value(at(x)); }, begin, end, 0, 0, &error);
+    return {begin, end, integral, error};
+  }
+
   At at(double x) const {
     const auto& techniques = estimator_.allocation.techniques;
     std::array<double, 64> all = {};
@@ -64,12 +102,18 @@ class Quadrature {
   std::size_t n_;
 };
 
+/// a − b, but 0 where that is nothing but the error of the integrals in it: rounding has no end to refine to.
+double difference(double a, double b) {
+  constexpr double kQuadratureError = 1e-12;
+  return std::fabs(a - b) > kQuadratureError * std::fabs(a) ? a - b : 0;
+}
+
 /// ∫ p (w f / (share p) − mean)².
 double spread(const Quadrature& q, std::size_t k, double share, double mean) {
   return q.integrate([&](const At& here) {
     const double p = here.pdfs[k];
     if (p == 0) return 0.0;
-    const double d = here.weights[k] * here.f / (share * p) - mean;
+    const double d = difference(here.weights[k] * here.f / (share * p), mean);
     return p * d * d;
   });
 }
@@ -106,8 +150,9 @@ double optimal_variance(const Quadrature& q) {
   }
   const Eigen::VectorXd alpha = gram.completeOrthogonalDecomposition().solve(moments);
   return q.integrate([&](const At& here) {
-    double g = here.f;
-    for (Eigen::Index k = 0; k < n; ++k) g -= alpha[k] * pdf(here, k);
+    double fit = 0;
+    for (Eigen::Index k = 0; k < n; ++k) fit += alpha[k] * pdf(here, k);
+    const double g = difference(here.f, fit);
     return over_mixture(here, g * g);
   });
 }

@@ -103,9 +103,10 @@ std::string error_of(const std::string& name, const std::vector<Technique>& tech
 TEST(ParseEstimator, ErrorsSayWhatIsWrongAndWhatThereIs) {
   EXPECT_EQ(error_of("balence", kScene),
             "there is no estimator 'balence' for this scene; did you mean 'balance'? (it has light, bsdf, average, "
-            "balance, power, cutoff, maximum)");
+            "balance, power, cutoff, maximum, optimal, optimal-progressive, one-sample-balance, one-sample-power)");
   EXPECT_EQ(error_of("", kScene),
-            "there is no estimator '' for this scene (it has light, bsdf, average, balance, power, cutoff, maximum)");
+            "there is no estimator '' for this scene (it has light, bsdf, average, balance, power, cutoff, maximum, "
+            "optimal, optimal-progressive, one-sample-balance, one-sample-power)");
   EXPECT_EQ(error_of("light*3", kScene).find("there is no estimator 'light*3'"), 0u);
   EXPECT_EQ(error_of("balance@light+bsfd", kScene),
             "estimator 'balance@light+bsfd': there is no technique 'bsfd' here; did you mean 'bsdf'? (this scene has "
