@@ -40,6 +40,9 @@ std::string key_help(const std::string& key) {
       {"target", "'rmse 5%': replicates are added until every rmse is known to ±5 %, at most --replicates (4096)"},
       {"budget", "60s, 2min or 1h: replicates are added where they narrow most, until the time is spent"},
       {"timing", "how often to time every cell by itself, such as 15, or none (default none)"},
+      {"checks",
+       "theorems to hold the results against, balance-bound,one-sample-balance,average-bound,exact-variance, or none "
+       "(default none)"},
   };
   const auto found = kHelp.find(key);
   return found == kHelp.end() ? "" : found->second;

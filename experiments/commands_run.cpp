@@ -103,6 +103,9 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
         {"deterministic", "one replicate: no variance, no kurtosis, no intervals", "", ""},
         {"exact", "every error is 0", "", ""},
         {"invalid", "an estimate or a reference is not finite; manifest.json names the first", "", ""},
+        {"holds", "theory.csv: the measured number agrees with the theorem within its interval", "", ""},
+        {"violated", "theory.csv: the whole interval lies beyond the bound, or beside the prediction", "", ""},
+        {"asymptotic", "theory.csv: the prediction is a limit, and there are too few rounds to be held to it", "", ""},
         {"too-few-points", "fewer than two sample counts: no rate is fitted", "", ""},
         {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""},
         {"equal",
@@ -153,12 +156,18 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
   } else if (!arguments.quiet) {
     const std::string measured = measures_summary(outcome.plan.measures, outcome.measured);
     const std::string timed = timing_summary(outcome.timed);
-    fmt::print("{}\n{}{}{}{}Tables and images: {}\n", summary(outcome.results), measured, measured.empty() ? "" : "\n",
-               timed, timed.empty() ? "" : "\n", out);
+    const std::string theory = spec.checks.empty() ? "" : theory_summary(outcome.theory) + "\n";
+    fmt::print("{}\n{}{}{}{}{}Tables and images: {}\n", summary(outcome.results), measured,
+               measured.empty() ? "" : "\n", timed, timed.empty() ? "" : "\n", theory, out);
   }
   if (outcome.invalid_cells > 0) {
     message("halfslope: {} of {} cells are invalid (values that are not finite); see {}/manifest.json\n",
             outcome.invalid_cells, outcome.plan.cells.size(), out);
+    return static_cast<int>(ExitCode::kCheckFailed);
+  }
+  if (const std::size_t violated = outcome.theory.violated(); violated > 0) {
+    message("halfslope: {} of {} theory checks are violated; see {}/theory.csv\n", violated, outcome.theory.rows.size(),
+            out);
     return static_cast<int>(ExitCode::kCheckFailed);
   }
   return static_cast<int>(ExitCode::kDone);

@@ -51,6 +51,12 @@ void time_and_write(const Spec& spec, const Catalogue& catalogue, const RunOptio
   for (std::size_t k = 0; k < texts.size(); ++k) write_file_atomically(folder.path(kTimingFiles[k]), texts[k]);
 }
 
+// A table of an earlier run that asked for it.
+void remove_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  std::filesystem::remove(path, ignored);
+}
+
 }  // namespace
 
 RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const RunOptions& options) {
@@ -109,6 +115,12 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   write("comparisons.csv", comparisons_csv(outcome.results));
   write("convergence.csv", convergence_csv(outcome.results));
   write("manifest.json", manifest_json(spec, plan, outcome.results, references, started));
+  if (!spec.checks.empty()) {
+    outcome.theory = check_theory(spec.checks, plan, outcome.results, references);
+    write("theory.csv", theory_csv(outcome.theory));
+  } else {
+    remove_file(folder.path("theory.csv"));
+  }
   // Last, since it is not part of the journal: what an interruption costs is these alone.
   try {
     outcome.measured =
@@ -121,8 +133,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   if (plan.measures.rows() > 0) {
     write_discrepancy_csv(folder.path("discrepancy.csv"), plan.measures, outcome.measured);
   } else {
-    std::error_code ignored;  // of an earlier run that asked for some
-    std::filesystem::remove(folder.path("discrepancy.csv"), ignored);
+    remove_file(folder.path("discrepancy.csv"));
   }
   time_and_write(spec, catalogue, options, folder, outcome);
   return outcome;

@@ -7,6 +7,7 @@
 #include "experiments/catalogue.h"
 #include "experiments/plan.h"
 #include "experiments/results.h"
+#include "experiments/theory.h"
 #include "experiments/timing_results.h"
 
 namespace halfslope {
@@ -23,6 +24,7 @@ struct RunOutcome {
   Results results;
   Measurements measured;
   std::vector<TimingResult> timed;
+  TheoryReport theory;
   std::size_t invalid_cells = 0;
 };
 

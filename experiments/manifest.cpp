@@ -62,6 +62,7 @@ std::string manifest_json(const Spec& spec, const Plan& plan, const Results& res
   if (spec.target) manifest["spec"]["target"] = target_text(*spec.target);
   if (spec.budget) manifest["spec"]["budget"] = budget_text(*spec.budget);
   if (spec.timing > 0) manifest["spec"]["timing"] = spec.timing;
+  if (!spec.checks.empty()) manifest["spec"]["checks"] = spec.checks;
   manifest["spec_hash"] = spec_hash(spec);
   manifest["version"] = version();
   manifest["compiler"] = compiler();

@@ -14,6 +14,7 @@
 #include "experiments/plan_units.h"
 #include "experiments/reference.h"
 #include "experiments/stopping_keys.h"
+#include "experiments/theory.h"
 #include "samplers/file_points.h"
 
 namespace halfslope {
@@ -163,6 +164,14 @@ std::size_t pass_for(Plan& plan, const Pass& wanted) {
   return plan.passes.size() - 1;
 }
 
+// A set is good as a whole: its first half says nothing of what its second half will be weighted by. Empty where the
+// estimator takes the points.
+std::string needs_sequence(const Estimator& estimator, const SamplerInfo& sampler) {
+  if (estimator.heuristic.kind != HeuristicKind::kOptimalProgressive || sampler.sequence) return "";
+  return fmt::format("'{}' weights samples by those before them, so it needs a sequence; left out with {}, a set",
+                     estimator.name, sampler.name);
+}
+
 void remove_repeats(std::vector<std::string>& lines) {
   std::vector<std::string> unique;
   for (auto& line : lines) {
@@ -181,6 +190,7 @@ std::string illegal_samples(const Estimator& estimator, const Sampler& sampler, 
     return fmt::format("'{}' takes {} samples a round, so N = {} does not divide; the nearest legal: {}{}",
                        estimator.name, round, samples, below > 0 ? std::to_string(below) + " and " : "", below + round);
   }
+  if (const std::string problem = needs_sequence(estimator, sampler.info()); !problem.empty()) return problem;
   const auto neighbours = sampler.illegal(samples / round, layout);
   if (!neighbours) return "";
   std::string nearest;
@@ -238,6 +248,10 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
                     fmt::format("sampler '{}' has {} dimensions; '{}' on scene '{}' takes {}", info.name, info.max_dims,
                                 scene.estimators[e].name, scene.name, layout.dims()));
           }
+          if (const std::string problem = needs_sequence(scene.estimators[e], info); !problem.empty()) {
+            plan.left_out.push_back(problem), plan.skips.push_back(problem);
+            continue;
+          }
           Pass pass;
           pass.scene = s;
           pass.precision = precision;
@@ -274,6 +288,10 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   for (std::size_t p = 0; p < plan.passes.size(); ++p) add_units(plan, p);
   note_unused_techniques(plan);
   note_sharing(plan);
+  note_optimal(plan);
+  if (!spec.checks.empty()) {
+    for (auto& line : left_out_of_checks(plan)) plan.left_out.push_back(line), plan.skips.push_back(std::move(line));
+  }
   const std::size_t before = plan.left_out.size();
   plan.measures = plan_measures(spec, catalogue.samplers, plan.left_out);
   plan.skips.insert(plan.skips.end(), plan.left_out.begin() + static_cast<std::ptrdiff_t>(before), plan.left_out.end());

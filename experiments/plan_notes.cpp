@@ -52,4 +52,16 @@ void note_sharing(Plan& plan) {
   }
 }
 
+void note_optimal(Plan& plan) {
+  for (const PlannedScene& scene : plan.scenes) {
+    for (const Estimator& e : scene.estimators) {
+      if (e.heuristic.kind != HeuristicKind::kOptimal) continue;
+      plan.skips.push_back(fmt::format(
+          "{}: its weights are solved for from the samples that they weight, so it is biased at small N, as 1/N: see "
+          "column bias; optimal-progressive is not, at independent samples",
+          e.name));
+    }
+  }
+}
+
 }  // namespace halfslope

@@ -11,4 +11,7 @@ void note_unused_techniques(Plan& plan);
 /// Heuristics that share a pass, and sample counts that are prefixes of a larger one.
 void note_sharing(Plan& plan);
 
+/// What a reader of `optimal`'s numbers should know.
+void note_optimal(Plan& plan);
+
 }  // namespace halfslope

@@ -39,12 +39,13 @@ struct Spec {
   std::vector<Precision> precision = {Precision::kF32};
   std::vector<std::string> measures;  ///< of the points that the samplers gave; in the order of measure_catalogue()
   IntervalMethod interval = IntervalMethod::kBootstrapT;  ///< of the RMSE
-  std::optional<double> target;       ///< replicates stop where every RMSE is known to ± this share of it
-  std::optional<double> budget;       ///< seconds that the cells share; not together with a target
+  std::optional<double> target;  ///< replicates stop where every RMSE is known to ± this share of it
+  std::optional<double> budget;  ///< seconds that the cells share; not together with a target
   /// Of a run that decides on the way how many replicates it takes; the key `replicates` sets both.
   std::int64_t most_replicates = 4096;
   bool in_stages() const { return target || budget; }
-  int timing = 0;                     ///< repetitions of each cell's timing; 0: nothing is timed
+  int timing = 0;                   ///< repetitions of each cell's timing; 0: nothing is timed
+  std::vector<std::string> checks;  ///< theorems to hold the results against; in the order of theory_checks()
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;

@@ -9,6 +9,7 @@
 #include "core/assertion.h"
 #include "experiments/joined.h"
 #include "experiments/stopping_keys.h"
+#include "experiments/theory.h"
 
 namespace halfslope {
 namespace {
@@ -201,6 +202,33 @@ void set_timing(Spec& spec, const Key& key, const SpecValue& value) {
   spec.timing = none ? 0 : static_cast<int>(integer(key, value, item, kFewestTimings, kMostTimings));
 }
 
+std::size_t check_rank(const std::string& name) {
+  const auto found = std::ranges::find(theory_checks(), std::string_view(name), &TheoryCheckInfo::name);
+  return static_cast<std::size_t>(found - theory_checks().begin());
+}
+
+std::vector<std::string> theory_check_names() {
+  std::vector<std::string> list;
+  for (const TheoryCheckInfo& check : theory_checks()) list.emplace_back(check.name);
+  return list;
+}
+
+void set_checks(Spec& spec, const Key& key, const SpecValue& value) {
+  if (value.items.empty()) refuse(key, value, value.place, "found an empty list");
+  std::vector<std::string> list;
+  if (value.is_list || value.items[0].text != "none") {
+    for (const SpecItem& item : value.items) {
+      const std::string& name = text(key, value, item);
+      if (check_rank(name) == theory_checks().size())
+        refuse(key, value, item.place,
+               fmt::format("found {}{}", described(item), did_you_mean(name, theory_check_names())));
+      append_unique(key, value, item, list, name);
+    }
+  }
+  std::ranges::stable_sort(list, {}, check_rank);
+  spec.checks = std::move(list);
+}
+
 // Of two names equally near to a wrong one, the first is offered. To add a key: a row here, a field in Spec, and its
 // part in canonical_json.
 const std::vector<Key>& keys() {
@@ -234,6 +262,8 @@ const std::vector<Key>& keys() {
       {"budget", "a time above 0 as in '60 s', '2 min' or '1 h', at most 1000 h, or 'none'", false,
        [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.budget, key, value, parse_budget); }},
       {"timing", "an integer from 3 to 10000, the repetitions, or 'none'", false, set_timing},
+      {"checks", fmt::format("{}, a list of different ones, or 'none'", joined(theory_check_names())), true,
+       set_checks},
   };
   return table;
 }
