@@ -81,7 +81,7 @@ TEST(OneSample, ChoosesWithTheProbabilitiesOfTheCounts) {
                                                   catalogue)[0][0];
     const double variance = (1 / probability - 1) / 4, error = mean_of(values).standard_error;
     const double odds = probability * (1 - probability), kurtosis = (1 - 3 * odds) / odds;
-    EXPECT_NEAR(error * error * count / variance, 1, 6 * std::sqrt((kurtosis - 1) / count) + 1e-4) << name;
+    EXPECT_NEAR(error * error * count / variance, 1, 6 * std::sqrt((kurtosis - 1) / count) + 1e-3) << name;
     EXPECT_NEAR(mean_of(values).mean, 0.5, 6 * std::sqrt(variance / count)) << name;
   }
 }
