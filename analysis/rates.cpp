@@ -1,30 +1,26 @@
 #include "analysis/rates.h"
 
 #include <algorithm>
-#include <array>
+#include <boost/math/special_functions/gamma.hpp>
 #include <cmath>
 #include <functional>
 
-#include "analysis/bootstrap.h"
 #include "analysis/compensated_sum.h"
+#include "analysis/rate_floor.h"
+#include "analysis/rate_line.h"
 #include "analysis/status.h"
 #include "core/assertion.h"
 
 namespace halfslope {
 namespace {
 
-/// The coefficients c_j of the least-squares slope on log N; empty if all N are one.
-std::vector<double> slope_coefficients(std::span<const double> samples) {
-  std::vector<double> x(samples.size());
-  CompensatedSum sum, squares;
-  for (std::size_t j = 0; j < x.size(); ++j) sum.add(x[j] = std::log(samples[j]));
-  for (double& value : x) {
-    value -= sum.value() / static_cast<double>(x.size());
-    squares.add(value * value);
-  }
-  for (double& value : x) value /= squares.value();
-  return x;
-}
+/// V̄ is at most this share of V̄ + MSE.
+constexpr double kMostReference = 0.3;
+constexpr double kRoundingReach = 100;
+/// A window whose errors fall no faster, after errors that fell, is a floor.
+constexpr double kFlat = -0.1;
+/// Errors this many times a floor's mean squared error are above it.
+constexpr double kAboveFloor = 10;
 
 double mean_of(std::span<const double> values) {
   CompensatedSum sum;
@@ -32,134 +28,172 @@ double mean_of(std::span<const double> values) {
   return sum.value() / static_cast<double>(values.size());
 }
 
-double dot(std::span<const double> a, std::span<const double> b) {
-  std::array<double, 4> sum{};  // four chains: one would wait for each addition to finish
-  std::size_t i = 0;
-  for (; i + 4 <= a.size(); i += 4) {
-    for (std::size_t lane = 0; lane < 4; ++lane) sum[lane] += a[i + lane] * b[i + lane];
-  }
-  for (; i < a.size(); ++i) sum[0] += a[i] * b[i];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+/// What δ² of the reference stays below in 999 of 1000 cases.
+double largest_reference_error(const ReferenceNoise& reference) {
+  if (!(reference.mse_variance > 0)) return reference.mse;
+  const double shape = reference.mse * reference.mse / reference.mse_variance;
+  return reference.mse_variance / reference.mse * boost::math::gamma_p_inv(shape, 0.999);
 }
 
-/// The replicates as the bootstrap sees them: deviations (mse[j][r] − mean_r) / MSE_j, so a resample with weights w has
-/// MSE*_j / MSE_j = 1 + Σ_r w_r deviations[j][r] / R.
-class RateBootstrap {
- public:
-  RateBootstrap(std::vector<double> coefficients, std::vector<std::vector<double>> deviations)
-      : c_(std::move(coefficients)),
-        deviations_(std::move(deviations)),
-        influence_(replicates()),
-        ratio_(c_.size(), 1.0) {}
-
-  std::size_t replicates() const { return deviations_[0].size(); }
-
-  /// Standard error of the rate with these weights; 0 if all influences drawn are equal. Uses the MSE ratios that
-  /// slope_change left, 1 before its first call.
-  double standard_error(std::span<const double> weights) {
-    std::ranges::fill(influence_, 0.0);
-    for (std::size_t j = 0; j < c_.size(); ++j) {
-      const double factor = 0.5 * c_[j] / ratio_[j];
-      for (std::size_t r = 0; r < influence_.size(); ++r) influence_[r] += factor * deviations_[j][r];
-    }
-    // About an influence that was drawn, so that equal ones give exact zeros.
-    const auto drawn = std::ranges::find_if(weights, [](double weight) { return weight > 0; }) - weights.begin();
-    const double shift = influence_[static_cast<std::size_t>(drawn)], n = static_cast<double>(replicates());
-    double sum = 0, squares = 0;
-    for (std::size_t r = 0; r < influence_.size(); ++r) {
-      const double d = influence_[r] - shift;
-      sum += weights[r] * d;
-      squares += weights[r] * d * d;
-    }
-    return squares > 0 ? std::sqrt((squares - sum * sum / n) / (n * (n - 1))) : 0.0;
-  }
-
-  /// Rate of the weighted replicates less the rate of all; empty where an MSE*_j is not positive.
-  std::optional<double> slope_change(std::span<const double> weights) {
-    double change = 0;
-    for (std::size_t j = 0; j < c_.size(); ++j) {
-      ratio_[j] = 1 + dot(weights, deviations_[j]) / static_cast<double>(replicates());
-      if (!(ratio_[j] > 0)) return std::nullopt;
-      change += c_[j] * 0.5 * std::log(ratio_[j]);
-    }
-    return change;
-  }
-
- private:
-  std::vector<double> c_;
-  std::vector<std::vector<double>> deviations_;
-  std::vector<double> influence_, ratio_;
+/// What is wrong with the N of a line, and which remain.
+struct Usable {
+  std::vector<std::size_t> counts;  ///< indices of the N
+  Status status;
 };
 
-std::optional<Interval> rate_interval(double rate, RateBootstrap bootstrap, std::uint64_t seed) {
-  const std::size_t replicates = bootstrap.replicates();
-  std::vector<double> weights(replicates, 1.0), studentised;
-  const double se = replicates < 2 ? 0 : bootstrap.standard_error(weights);
-  if (!(se > 0)) return std::nullopt;
-  std::vector<std::uint32_t> indices(replicates);
-  studentised.reserve(kBootstrapResamples);
-  for (std::uint32_t resample = 0; resample < kBootstrapResamples; ++resample) {
-    draw_resample(seed, resample, static_cast<std::uint32_t>(replicates), indices);
-    std::ranges::fill(weights, 0.0);
-    for (const std::uint32_t index : indices) weights[index] += 1;
-    const std::optional<double> change = bootstrap.slope_change(weights);
-    const double resample_se = change ? bootstrap.standard_error(weights) : 0;
-    if (resample_se > 0) studentised.push_back(*change / resample_se);
+Usable find_usable(const RateData& data) {
+  Usable usable;
+  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false, no_spread = true;
+  const double largest_error = largest_reference_error(data.reference);
+  for (std::size_t j = 0; j < data.samples.size(); ++j) {
+    assert_equal(data.mse[j].size(), data.mse[0].size(), "replicates at each sample count");
+    const double measured = mean_of(data.mse[j]);
+    const double least =
+        data.variance.empty() ? measured - data.reference.mse : std::max(data.variance[j], measured - largest_error);
+    const bool finite = std::isfinite(measured),
+               in_reach =
+                   data.reference.mse > 0 && (measured <= data.reference.mse ||
+                                              !(data.reference.mse * (1 - kMostReference) <= kMostReference * least)),
+               rounded = measured > 0 && measured < kRoundingReach * data.rounding_mse;
+    invalid |= !finite;
+    exact |= measured == 0;
+    reference_limited |= in_reach && finite;
+    rounding_limited |= rounded;
+    no_spread = no_spread && std::ranges::adjacent_find(data.mse[j], std::not_equal_to<>()) == data.mse[j].end();
+    if (finite && measured > 0 && !in_reach && !rounded) usable.counts.push_back(j);
   }
-  return bootstrap_t_interval(rate, se, 1 + 1.5 / static_cast<double>(replicates), studentised, 0.95);
+  usable.status.mark_if(invalid, "invalid");
+  usable.status.mark_if(exact, "exact");
+  usable.status.mark_if(reference_limited, "reference-limited");
+  usable.status.mark_if(rounding_limited, "rounding-limited");
+  no_spread = no_spread && data.mse[0].size() > 1 && !invalid && !exact;
+  usable.status.mark_if(no_spread, "no-spread");
+  if (no_spread) usable.counts.clear();
+  return usable;
+}
+
+RateFit linear_fit(const LineBootstrap& line, std::span<const double> samples, std::span<const double> weights,
+                   std::string status) {
+  const std::vector<double> c = slope_coefficients(samples, weights);
+  RateFit fit{line.value(c), line.interval(c), 0, 0, std::move(status)};
+  for (std::size_t j = 0; j < samples.size(); ++j) {
+    if (weights[j] == 0) continue;
+    if (fit.samples_lo == 0) fit.samples_lo = samples[j];
+    fit.samples_hi = samples[j];
+  }
+  return fit;
+}
+
+/// What is found beyond the plain line.
+struct Search {
+  bool bent = false;
+  std::optional<RateFit> window;
+};
+
+Search search_window(const LineBootstrap& line, std::span<const double> samples) {
+  std::vector<double> weights = line.variances();
+  for (double& weight : weights) weight = 1 / weight;
+  const std::size_t counts = line.counts();
+  Search search;
+  if (counts < kFewestInWindow) return search;
+  search.bent = is_bent(line, samples, weights, 0, counts);
+  if (!search.bent) {
+    search.window = linear_fit(line, samples, weights, "asymptotic");
+    return search;
+  }
+  if (const std::optional<Floor> floor = find_floor(line, samples, weights)) {
+    const FloorFit& fit = floor->fit;
+    RateFit row{fit.rate,     line.interval(fit.coefficients), samples[floor->first], samples[floor->last - 1], "floor",
+                fit.floor_mse};
+    const double shift = fit.rate - line.value(fit.coefficients);  // the model is not linear, its change nearly is
+    if (row.interval) row.interval = Interval{row.interval->lo + shift, row.interval->hi + shift};
+    search.window = row;
+    return search;
+  }
+  std::optional<std::size_t> first = straight_from(line, samples, weights, counts);
+  if (!first) return search;
+  RateFit tail = linear_fit(line, samples, weights_within(weights, *first, counts), "asymptotic");
+  if (!(tail.rate > kFlat) || !(line.log_rmse()[0] > line.log_rmse()[*first])) {
+    search.window = tail;
+    return search;
+  }
+  // Flat, after errors that fell: what is above it may still follow a line.
+  double sum = 0, total = 0;
+  for (std::size_t j = *first; j < counts; ++j) {
+    sum += weights[j] * line.log_rmse()[j];
+    total += weights[j];
+  }
+  const double floor_mse = std::exp(2 * sum / total);
+  std::size_t last = 0;
+  while (last < *first && std::exp(2 * line.log_rmse()[last]) > kAboveFloor * floor_mse) ++last;
+  first = straight_from(line, samples, weights, last);
+  search.window = first ? linear_fit(line, samples, weights_within(weights, *first, last), "floor")
+                        : RateFit{{}, {}, tail.samples_lo, tail.samples_hi, "floor"};
+  search.window->floor_mse = floor_mse;
+  return search;
+}
+
+std::vector<LocalRate> local_rates(const RateData& data, const std::optional<LineBootstrap>& line,
+                                   std::span<const std::size_t> used) {
+  std::vector<LocalRate> rates;
+  for (std::size_t j = 0; j + 1 < data.samples.size(); ++j) {
+    LocalRate rate{data.samples[j], data.samples[j + 1], {}, {}};
+    const auto at = std::ranges::find(used, j);
+    if (line && at != used.end() && at + 1 != used.end() && at[1] == j + 1) {
+      std::vector<double> c(used.size());
+      const auto i = static_cast<std::size_t>(at - used.begin());
+      c[i + 1] = 1 / std::log(data.samples[j + 1] / data.samples[j]);
+      c[i] = -c[i + 1];
+      rate.rate = line->value(c);
+      rate.interval = line->interval(c);
+    }
+    rates.push_back(rate);
+  }
+  return rates;
 }
 
 }  // namespace
 
-RateFit fit_rate(std::span<const double> samples, std::span<const std::vector<double>> mse,
-                 std::span<const double> reference_mse, std::uint64_t seed, double rounding_mse) {
-  assert_equal(mse.size(), samples.size(), "sample counts that have errors");
-  assert_equal(reference_mse.size(), samples.size(), "sample counts that have a reference variance");
-  RateFit fit;
-  const auto [least, largest] = std::ranges::minmax_element(samples);
-  if (samples.empty() || *least == *largest) {
-    fit.status = "too-few-points";
-    return fit;
+LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
+  assert_equal(data.mse.size(), data.samples.size(), "sample counts that have errors");
+  assert_equal(data.variance.empty() || data.variance.size() == data.samples.size(), true,
+               "sample counts that have a variance");
+  LineRates rates;
+  RateFit& plain = rates.plain;
+  if (data.samples.empty() || data.samples.front() == data.samples.back()) {
+    plain.status = "too-few-points";
+    return rates;
   }
-  fit.samples_lo = *least;
-  fit.samples_hi = *largest;
+  assert_equal(std::ranges::is_sorted(data.samples, std::less_equal<>()), true, "sample counts that rise");
+  assert_equal(data.mse[0].empty(), false, "no replicates");
+  plain.samples_lo = data.samples.front();
+  plain.samples_hi = data.samples.back();
 
-  std::vector<double> measured(samples.size());
-  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false, no_spread = true;
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    assert_equal(mse[j].size(), mse[0].size(), "replicates at each sample count");
-    measured[j] = mean_of(mse[j]);
-    invalid |= !std::isfinite(measured[j]);
-    exact |= measured[j] == 0;
-    no_spread = no_spread && std::ranges::adjacent_find(mse[j], std::not_equal_to<>()) == mse[j].end();
-    reference_limited |= reference_mse[j] > kReferenceShare * measured[j];
-    rounding_limited |= measured[j] > 0 && measured[j] < 100 * rounding_mse;
+  const Usable usable = find_usable(data);
+  Status status = usable.status;
+  const std::size_t replicates = data.mse[0].size();
+  std::vector<double> samples;
+  std::vector<std::vector<double>> mse;
+  for (const std::size_t j : usable.counts) {
+    samples.push_back(data.samples[j]);
+    mse.push_back(data.mse[j]);
   }
-  assert_equal(mse[0].empty(), false, "no replicates");
-  Status status;
-  status.mark_if(invalid, "invalid");
-  status.mark_if(exact, "exact");
-  status.mark_if(reference_limited, "reference-limited");
-  status.mark_if(rounding_limited, "rounding-limited");
-  const std::size_t replicates = mse[0].size();
-  status.mark_if(no_spread && replicates > 1 && !invalid && !exact, "no-spread");
+  std::optional<LineBootstrap> line;
+  if (samples.size() >= 2) line.emplace(mse, data.reference, seed);
+  rates.local = local_rates(data, line, usable.counts);
+  const Search search = line && replicates >= kCertifiedReplicates ? search_window(*line, samples) : Search();
+  rates.window = search.window;
+  const bool floor = search.window && search.window->floor_mse;
+  status.mark_if(floor, "floor");
   const bool refused = !status.ok();
   status.mark_if(replicates == 1, "deterministic");
   status.mark_if(replicates > 1 && replicates < kCertifiedReplicates, "few-replicates");
-  fit.status = status.text();
-  if (refused) return fit;
-
-  const std::vector<double> c = slope_coefficients(samples);
-  CompensatedSum rate;
-  std::vector<std::vector<double>> deviations(mse.begin(), mse.end());
-  for (std::size_t j = 0; j < samples.size(); ++j) {
-    const double corrected = measured[j] - reference_mse[j];
-    rate.add(c[j] * 0.5 * std::log(corrected));
-    for (double& value : deviations[j]) value = (value - measured[j]) / corrected;
-  }
-  fit.rate = rate.value();
-  fit.interval = rate_interval(*fit.rate, RateBootstrap(c, std::move(deviations)), seed);
-  return fit;
+  status.mark_if(!refused && search.bent, "pre-asymptotic");
+  plain.status = status.text();
+  if (!refused) plain = linear_fit(*line, samples, std::vector<double>(samples.size(), 1.0), plain.status);
+  return rates;
 }
+
+RateFit fit_rate(const RateData& data, std::uint64_t seed) { return analyse_rates(data, seed).plain; }
 
 }  // namespace halfslope
