@@ -12,6 +12,7 @@
 
 #include "analysis/coverage_comparisons.h"
 #include "analysis/coverage_intervals.h"
+#include "analysis/coverage_rates.h"
 #include "analysis/coverage_stopping.h"
 
 namespace halfslope {
@@ -19,6 +20,7 @@ namespace halfslope {
 std::span<const CoverageStudyInfo> coverage_studies() {
   static constexpr CoverageStudyInfo kStudies[] = {
       {"intervals", "of the RMSE by every method, and of the mean; and the heavy-tail mark", interval_coverage, 20000},
+      {"rates", "of rates: every law, reference and floor that fits are promised for", rate_coverage, 4000},
       {"comparisons", "of the ratios of mean squared errors; false alarms of families, and differences found",
        comparison_coverage, 4000},
       {"stopping", "of an RMSE whose interval decided how many replicates there are", stopping_coverage, 4000},

@@ -18,7 +18,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-13;
 /// As many replicates as the common relative variance counts for beside an N's own. The variance of a relative variance
 /// is near (κ − 1)/R, κ = 15 the kurtosis of squared normal errors.
-constexpr double kCommonReplicates = 64;
+constexpr double kCommonReplicates = 1024;
 
 double mean_of(std::span<const double> values) {
   CompensatedSum sum;
@@ -28,19 +28,19 @@ double mean_of(std::span<const double> values) {
 
 /// Four dot products with one vector at once: each number of it is read once, and no sum waits for another.
 std::array<double, 4> dot_four(std::span<const double> weights, const std::array<const double*, 4>& columns) {
-  std::array<double, 4> even{}, odd{};
+  double sums[4][2] = {};  // [column][even or odd]
   std::size_t r = 0;
   for (; r + 2 <= weights.size(); r += 2) {
     for (std::size_t k = 0; k < 4; ++k) {
-      even[k] += weights[r] * columns[k][r];
-      odd[k] += weights[r + 1] * columns[k][r + 1];
+      for (std::size_t lane = 0; lane < 2; ++lane) sums[k][lane] += weights[r + lane] * columns[k][r + lane];
     }
   }
-  if (r < weights.size()) {
-    for (std::size_t k = 0; k < 4; ++k) even[k] += weights[r] * columns[k][r];
+  std::array<double, 4> result{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    result[k] = sums[k][0] + sums[k][1];
+    if (r < weights.size()) result[k] += weights[r] * columns[k][r];
   }
-  for (std::size_t k = 0; k < 4; ++k) even[k] += odd[k];
-  return even;
+  return result;
 }
 
 /// δ*² − V̄ at the quantiles (b + ½)/B: resamples are independent of their numbers, so no random numbers are needed.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kFewestForFloor = 5;
 constexpr double kDominated = 0.5;
-constexpr std::size_t kFewestBeforeFloor = 3;
+constexpr std::size_t kFewestBeforeFloor = 3, kFewestInFloor = 2;
 
 /// log a, rate, log f.
 using Parameters = Eigen::Vector3d;
@@ -103,11 +103,12 @@ std::optional<Floor> find_floor(const LineBootstrap& line, std::span<const doubl
   for (std::size_t first = 0; first + kFewestForFloor <= last; ++first) {
     if (!is_bent(line, samples, weights, first, last)) return std::nullopt;
     std::optional<FloorFit> fit = fit_floor(line, samples, weights, first, last);
-    if (!fit || fit->share.back() < kDominated || !(fit->rate < 0)) continue;
+    if (!fit || !(fit->rate < 0)) continue;
     const auto dominated = std::find_if(fit->share.begin() + static_cast<std::ptrdiff_t>(first), fit->share.end(),
                                         [](double share) { return share > kDominated; });
     const auto end = static_cast<std::size_t>(dominated - fit->share.begin());
-    if (end < first + kFewestBeforeFloor || line.differ_from_zero(fit->residuals, kLineLevel)) continue;
+    if (end < first + kFewestBeforeFloor || end + kFewestInFloor > last) continue;
+    if (line.differ_from_zero(fit->residuals, kLineLevel)) continue;
     return Floor{std::move(*fit), first, end};
   }
   return std::nullopt;

@@ -31,7 +31,7 @@ std::vector<double> weights_within(std::span<const double> weights, std::size_t 
 }
 
 bool is_bent(const LineBootstrap& line, std::span<const double> samples, std::span<const double> weights,
-             std::size_t first, std::size_t last) {
+             std::size_t first, std::size_t last, double level) {
   const auto count = static_cast<Eigen::Index>(last - first);
   Eigen::MatrixXd powers(count, 3);  // 1, x, x², x about the middle so that they are far from collinear
   const double middle = 0.5 * (std::log(samples[first]) + std::log(samples[last - 1]));
@@ -48,8 +48,8 @@ bool is_bent(const LineBootstrap& line, std::span<const double> samples, std::sp
   Combination curvature{std::vector<double>(line.counts()), 0};
   for (Eigen::Index i = 0; i < count; ++i) curvature.c[first + static_cast<std::size_t>(i)] = parabola(2, i);
   curvature.value = line.value(curvature.c);
-  combinations.push_back(std::move(curvature));
-  return line.differ_from_zero(combinations, kLineLevel);
+  // Apart, because the largest of many has quantiles that would hide the curvature from few replicates.
+  return line.differ_from_zero(std::span(&curvature, 1), level / 2) || line.differ_from_zero(combinations, level / 2);
 }
 
 std::optional<std::size_t> straight_from(const LineBootstrap& line, std::span<const double> samples,

@@ -21,9 +21,9 @@ std::vector<double> slope_coefficients(std::span<const double> samples, std::spa
 
 /// Whether the y_j of [first, last) lie on no line: the largest of the residuals about the weighted line and of the
 /// curvature (the weighted coefficient of the parabola that is orthogonal to lines), each over its standard error, is
-/// beyond what joint resamples of the replicates give in 1 − kLineLevel of cases.
+/// beyond what joint resamples of the replicates give in 1 − level of cases.
 bool is_bent(const LineBootstrap& line, std::span<const double> samples, std::span<const double> weights,
-             std::size_t first, std::size_t last);
+             std::size_t first, std::size_t last, double level = kLineLevel);
 
 /// The least `first` for which [first, last) is not bent; empty where fewer than kFewestInWindow are left.
 std::optional<std::size_t> straight_from(const LineBootstrap& line, std::span<const double> samples,

@@ -152,48 +152,64 @@ std::vector<LocalRate> local_rates(const RateData& data, const std::optional<Lin
   return rates;
 }
 
-}  // namespace
-
-LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
-  assert_equal(data.mse.size(), data.samples.size(), "sample counts that have errors");
-  assert_equal(data.variance.empty() || data.variance.size() == data.samples.size(), true,
-               "sample counts that have a variance");
-  LineRates rates;
-  RateFit& plain = rates.plain;
-  if (data.samples.empty() || data.samples.front() == data.samples.back()) {
-    plain.status = "too-few-points";
-    return rates;
-  }
-  assert_equal(std::ranges::is_sorted(data.samples, std::less_equal<>()), true, "sample counts that rise");
-  assert_equal(data.mse[0].empty(), false, "no replicates");
-  plain.samples_lo = data.samples.front();
-  plain.samples_hi = data.samples.back();
-
-  const Usable usable = find_usable(data);
-  Status status = usable.status;
-  const std::size_t replicates = data.mse[0].size();
+/// A line with those of its N that can be used.
+struct UsedLine {
+  Usable usable;
   std::vector<double> samples;
+  std::optional<LineBootstrap> bootstrap;  ///< empty below two N
+};
+
+UsedLine used_line(const RateData& data, std::uint64_t seed) {
+  UsedLine line{find_usable(data), {}, {}};
   std::vector<std::vector<double>> mse;
-  for (const std::size_t j : usable.counts) {
-    samples.push_back(data.samples[j]);
+  for (const std::size_t j : line.usable.counts) {
+    line.samples.push_back(data.samples[j]);
     mse.push_back(data.mse[j]);
   }
-  std::optional<LineBootstrap> line;
-  if (samples.size() >= 2) line.emplace(mse, data.reference, seed);
-  rates.local = local_rates(data, line, usable.counts);
-  const Search search = line && replicates >= kCertifiedReplicates ? search_window(*line, samples) : Search();
-  rates.window = search.window;
-  const bool floor = search.window && search.window->floor_mse;
-  status.mark_if(floor, "floor");
+  if (mse.size() >= 2) line.bootstrap.emplace(mse, data.reference, seed);
+  return line;
+}
+
+RateFit plain_fit(const RateData& data, const UsedLine& line, const Search& search) {
+  const std::size_t replicates = data.mse[0].size();
+  Status status = line.usable.status;
+  status.mark_if(search.window && search.window->floor_mse, "floor");
   const bool refused = !status.ok();
   status.mark_if(replicates == 1, "deterministic");
   status.mark_if(replicates > 1 && replicates < kCertifiedReplicates, "few-replicates");
   status.mark_if(!refused && search.bent, "pre-asymptotic");
-  plain.status = status.text();
-  if (!refused) plain = linear_fit(*line, samples, std::vector<double>(samples.size(), 1.0), plain.status);
-  return rates;
+  if (!refused) {
+    return linear_fit(*line.bootstrap, line.samples, std::vector<double>(line.samples.size(), 1.0), status.text());
+  }
+  return {{}, {}, data.samples.front(), data.samples.back(), status.text()};
 }
 
-RateFit fit_rate(const RateData& data, std::uint64_t seed) { return analyse_rates(data, seed).plain; }
+/// Whether there are two different N, with errors of the shapes that RateData promises.
+bool has_line(const RateData& data) {
+  assert_equal(data.mse.size(), data.samples.size(), "sample counts that have errors");
+  assert_equal(data.variance.empty() || data.variance.size() == data.samples.size(), true,
+               "sample counts that have a variance");
+  if (data.samples.empty() || data.samples.front() == data.samples.back()) return false;
+  assert_equal(std::ranges::is_sorted(data.samples, std::less_equal<>()), true, "sample counts that rise");
+  assert_equal(data.mse[0].empty(), false, "no replicates");
+  return true;
+}
+
+constexpr const char* kTooFew = "too-few-points";
+
+}  // namespace
+
+LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
+  if (!has_line(data)) return {{{}, {}, 0, 0, kTooFew}, {}, {}};
+  const UsedLine line = used_line(data, seed);
+  const bool certified = line.bootstrap && data.mse[0].size() >= kCertifiedReplicates;
+  const Search search = certified ? search_window(*line.bootstrap, line.samples) : Search();
+  return {plain_fit(data, line, search), search.window, local_rates(data, line.bootstrap, line.usable.counts)};
+}
+
+RateFit fit_rate(const RateData& data, std::uint64_t seed) {
+  if (!has_line(data)) return {{}, {}, 0, 0, kTooFew};
+  return plain_fit(data, used_line(data, seed), {});
+}
 
 }  // namespace halfslope

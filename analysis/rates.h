@@ -75,7 +75,7 @@ struct LineRates {
 /// local: slopes between neighbouring used N; unlike the others for a single replicate too.
 LineRates analyse_rates(const RateData& data, std::uint64_t seed);
 
-/// analyse_rates(data, seed).plain
+/// The plain fit alone: of N that are not looked at one by one, so without the marks `pre-asymptotic` and `floor`.
 RateFit fit_rate(const RateData& data, std::uint64_t seed);
 
 }  // namespace halfslope

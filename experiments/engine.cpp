@@ -110,6 +110,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
   };
   write_reference_images(folder.path(), plan, references);
   write("rates.csv", rates_csv(outcome.results));
+  write("local_rates.csv", local_rates_csv(outcome.results));
   write("tails.csv", tails_csv(outcome.results));
   write("regions.csv", regions_csv(outcome.results));
   write("comparisons.csv", comparisons_csv(outcome.results));

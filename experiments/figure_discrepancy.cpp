@@ -49,9 +49,8 @@ std::vector<MeasuredSlope> measured_slopes(const MeasuresPlan& plan, const Measu
                      });
   for (auto& [key, line] : all) {
     // fit_rate() halves the slope, since it is made for squared errors.
-    const std::vector<double> exact(line.samples.size(), 0);
     RateFit fit =
-        fit_rate(line.samples, line.values, exact, hash_text(sampler_label(key.first->sampler) + "," + key.second, 1));
+        fit_rate({line.samples, line.values}, hash_text(sampler_label(key.first->sampler) + "," + key.second, 1));
     if (fit.rate) fit.rate = 2 * *fit.rate;
     if (fit.interval) fit.interval = Interval{2 * fit.interval->lo, 2 * fit.interval->hi};
     slopes.push_back({key.first, key.second, fit});

@@ -84,7 +84,9 @@ Results collect_results(const Plan& plan, std::span<const Reference> references,
     });
     for (std::size_t c = begin; c < end; ++c) visitor.in_order(plan.cells[c], line[c - begin]);
   }
-  results.rates = fit_rates(results.cells);
+  RateResults fitted = fit_rates(results.cells, threads);
+  results.rates = std::move(fitted.rates);
+  results.local_rates = std::move(fitted.local);
   return results;
 }
 

@@ -40,21 +40,43 @@ struct CellResult {
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;
 };
 
-/// One line of convergence: the cells that differ in N only.
+/// What a fit is over.
+enum class RateKind {
+  kPlain,    ///< every N of the line, by ordinary least squares: the first of a line's fits, and always there
+  kWindow,   ///< the N from which on the errors follow a line, weighted
+  kVariance  ///< every N, to the sample variance
+};
+
+/// A fit to a line of convergence: the cells that differ in N only.
 struct RateResult {
   std::size_t first_cell;  ///< index into the results' cells
   RateFit fit;
   std::optional<double> theory;
+  RateKind kind = RateKind::kPlain;
+};
+
+/// The slope between two neighbouring N of a line.
+struct LocalRateResult {
+  std::size_t first_cell;  ///< of the line
+  LocalRate fit;
+};
+
+/// All that is fitted to lines, in the order of the cells.
+struct RateResults {
+  std::vector<RateResult> rates;
+  std::vector<LocalRateResult> local;
 };
 
 struct Results {
   std::vector<CellResult> cells;  ///< in the order of the tables; the cells of a line side by side
   std::vector<RateResult> rates;  ///< in the order of the cells
+  std::vector<LocalRateResult> local_rates;
   std::vector<ComparisonFamily> comparisons;
 };
 
-/// The rates of every line of `cells`.
-std::vector<RateResult> fit_rates(const std::vector<CellResult>& cells);
+/// The rates of every line of `cells`, on so many threads (0: all). A line whose errors the reference limits, or those
+/// of its unbiased sampler's largest N, has the rate of its sample variance too.
+RateResults fit_rates(const std::vector<CellResult>& cells, int threads);
 
 /// What is done with a folded cell beside keeping its statistics: its memory is given back at once, so that a run's
 /// does not grow with replicates or pixels.

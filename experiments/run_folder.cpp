@@ -34,8 +34,9 @@ bool is_temporary(const std::filesystem::path& file) {
 }
 
 bool is_table(const std::string& name) {
-  constexpr std::array kTables = {"convergence.csv", "replicates.csv",  "rates.csv",  "regions.csv",  "tails.csv",
-                                  "comparisons.csv", "discrepancy.csv", "theory.csv", "manifest.json"};
+  constexpr std::array kTables = {"convergence.csv", "replicates.csv", "rates.csv",       "local_rates.csv",
+                                  "regions.csv",     "tails.csv",      "comparisons.csv", "discrepancy.csv",
+                                  "theory.csv",      "manifest.json"};
   return std::find(kTables.begin(), kTables.end(), name) != kTables.end() ||
          std::find(kTimingFiles.begin(), kTimingFiles.end(), name) != kTimingFiles.end();
 }

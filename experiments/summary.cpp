@@ -184,6 +184,7 @@ std::string summary(const Results& results) {
   }
   if (const std::string rates = rates_side_by_side(results); !rates.empty())
     text += "\nrates, the slopes of log RMSE against log N, with 95 % intervals\n\n" + rates;
+  if (const std::string remarks = rate_remarks(results); !remarks.empty()) text += "\n" + remarks;
   return text;
 }
 

@@ -67,6 +67,18 @@ std::string rates_csv(const Results& results) {
   return csv.text();
 }
 
+std::string local_rates_csv(const Results& results) {
+  CsvWriter csv(
+      {"scene", "estimator", "sampler", "precision", "samples_lo", "samples_hi", "rate", "rate_lo", "rate_hi"});
+  for (const LocalRateResult& rate : results.local_rates) {
+    key_cells(csv, results.cells[rate.first_cell].name);
+    csv.cell(rate.fit.samples_lo).cell(rate.fit.samples_hi).cell(rate.fit.rate);
+    csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->lo) : std::nullopt);
+    csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->hi) : std::nullopt).end_row();
+  }
+  return csv.text();
+}
+
 std::string tails_csv(const Results& results) {
   CsvWriter csv({"scene", "estimator", "sampler", "precision", "samples", "kurtosis", "kurtosis_corrected",
                  "kurtosis_limit", "median_abs_error", "worst_share", "certified", "relmse_lo", "relmse_hi"});

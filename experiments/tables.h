@@ -26,6 +26,7 @@ class ReplicatesTable {
   CsvWriter csv_;
 };
 std::string rates_csv(const Results& results);
+std::string local_rates_csv(const Results& results);
 /// Empty where there is nothing to compare.
 std::string comparisons_csv(const Results& results);
 /// Empty where no scene has parts.
@@ -41,6 +42,9 @@ std::string rates_side_by_side(const Results& results);
 /// Who wins and who cannot be told apart, in the family's scene and at its N: a line for the samplers of each estimator
 /// and for the estimators of each sampler. Empty where there is nothing to compare.
 std::string comparisons_text(const Results& results, const ComparisonFamily& family);
+/// Sentences on what the fits found: rates that differ from theory's beyond their interval, and errors that stop
+/// falling. Empty where there is nothing to say.
+std::string rate_remarks(const Results& results);
 
 /// What a person wants to see first: the largest N side by side, rates, and where an image has parts, which estimator
 /// wins where.
