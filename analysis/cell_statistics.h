@@ -17,6 +17,8 @@ struct ReplicateErrors {
   double mean = 0;           ///< (1/P) Σ Î
   double mean_error = 0;     ///< (1/P) Σ e, e = Î − R̂
   double mse = 0;            ///< (1/P) Σ e²
+  double variance = 0;       ///< (1/P) Σ (Î − m)² n/(n − 1), m the mean of n replicates, this one among them: of
+                             ///< expectation (1/P) Σ Var(Î), whatever the reference. NaN of one replicate
   double relmse = 0;         ///< (1/P) Σ e² / (R̂² + 0.01)
   double mae = 0;            ///< (1/P) Σ |e|
   double max_abs_error = 0;  ///< max |e|

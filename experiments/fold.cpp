@@ -25,6 +25,7 @@ struct Batch {
       to.value += from.value;
       to.error += from.error;
       to.abs_error += from.abs_error;
+      to.spread += from.spread;
       const bool larger = from.max_abs_error > to.max_abs_error || std::isnan(from.max_abs_error);
       if (larger && !std::isnan(to.max_abs_error)) to.max_abs_error = from.max_abs_error;
     }
@@ -105,6 +106,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
       errors.mean = batch.sums[r].value / integrals;
       errors.mean_error = batch.sums[r].error / integrals;
       errors.mae = batch.sums[r].abs_error / integrals;
+      errors.variance = batch.sums[r].spread / integrals;
       errors.max_abs_error = batch.sums[r].max_abs_error;
       for (const auto& [region, squared] : batch.squared) {
         errors.mse += squared[r].plain;

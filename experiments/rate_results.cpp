@@ -1,47 +1,103 @@
-// From the cells of a line of convergence to its rate.
+// From the cells of lines of convergence to their rates.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "core/random.h"
+#include "experiments/parallel.h"
 #include "experiments/results.h"
 
 namespace halfslope {
 namespace {
 
-RateResult fit_line(const std::vector<CellResult>& cells, std::size_t begin, std::size_t end) {
-  const CellResult& first = cells[begin];
-  std::vector<double> samples, reference_mse;
-  std::vector<std::vector<double>> mse;
-  const bool kept = !first.replicate_mse.empty();
-  for (std::size_t c = begin; c < end; ++c) {
-    samples.push_back(static_cast<double>(cells[c].name.samples));
-    reference_mse.push_back(cells[c].statistics.reference_mse);
-    mse.push_back(kept ? cells[c].replicate_mse : std::vector<double>{cells[c].mse});
+bool has_mark(const RateFit& fit, std::string_view mark) { return fit.status.find(mark) != std::string::npos; }
+
+/// Cells [begin, end) differ in N only, which rises.
+struct Line {
+  std::size_t begin, end;
+};
+
+RateData data_of(const std::vector<CellResult>& cells, Line line) {
+  const CellResult& first = cells[line.begin];
+  RateData data;
+  bool varied = true;
+  for (std::size_t c = line.begin; c < line.end; ++c) {
+    data.samples.push_back(static_cast<double>(cells[c].name.samples));
+    data.mse.push_back(first.replicate_mse.empty() ? std::vector<double>{cells[c].mse} : cells[c].replicate_mse);
+    data.variance.push_back(cells[c].statistics.variance.value_or(0));
+    varied = varied && cells[c].statistics.variance;
   }
-  RateResult rate;
-  rate.first_cell = begin;
-  rate.fit = fit_rate(samples, mse, reference_mse, hash_text(line_text(first.name), 1), first.facts.rounding_mse);
-  if (const auto mark = rate.fit.status.find("deterministic"); !kept && mark != std::string::npos) {
+  if (!varied) data.variance.clear();
+  data.reference = {first.statistics.reference_mse, first.reference_mse_variance};
+  data.rounding_mse = first.facts.rounding_mse;
+  return data;
+}
+
+/// The rate of the sample variance, where every cell has what its replicates add to it.
+std::optional<RateFit> variance_fit(const std::vector<CellResult>& cells, Line line, std::uint64_t seed) {
+  RateData data;
+  for (std::size_t c = line.begin; c < line.end; ++c) {
+    const std::vector<double>& spread = cells[c].replicate_variance;
+    if (spread.size() < 2 || !std::ranges::all_of(spread, [](double x) { return std::isfinite(x); })) return {};
+    data.samples.push_back(static_cast<double>(cells[c].name.samples));
+    data.mse.push_back(spread);
+  }
+  data.rounding_mse = cells[line.begin].facts.rounding_mse;
+  RateFit fit = fit_rate(data, seed);
+  fit.status = fit.status == "ok" ? "variance" : "variance;" + fit.status;
+  return fit;
+}
+
+RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
+  const CellResult& first = cells[line.begin];
+  const std::uint64_t seed = hash_text(line_text(first.name), 1);
+  LineRates fits = analyse_rates(data_of(cells, line), seed);
+  RateFit& plain = fits.plain;
+  if (const auto mark = plain.status.find("deterministic"); first.replicate_mse.empty() && mark != std::string::npos) {
     // One number at each N not because there was one replicate: they are not kept, so there is no interval.
-    rate.fit.status.replace(mark, std::string("deterministic").size(), "many-replicates");
+    plain.status.replace(mark, std::string("deterministic").size(), "many-replicates");
   }
   if (first.facts.infinite_variance) {
     // The slope would be that of the largest values that happened to be met.
-    rate.fit.rate.reset();
-    rate.fit.interval.reset();
-    rate.fit.status = rate.fit.status.starts_with("invalid") ? "invalid;infinite-variance" : "infinite-variance";
-    return rate;
+    plain.rate.reset();
+    plain.interval.reset();
+    plain.status = has_mark(plain, "invalid") ? "invalid;infinite-variance" : "infinite-variance";
+    return {{{line.begin, plain, std::nullopt, RateKind::kPlain}}, {}};
   }
-  rate.theory = first.facts.theory;
-  return rate;
+  RateResults results;
+  const auto add = [&](const RateFit& fit, RateKind kind) {
+    results.rates.push_back({line.begin, fit, first.facts.theory, kind});
+  };
+  add(plain, RateKind::kPlain);
+  if (fits.window) add(*fits.window, RateKind::kWindow);
+  if (first.facts.unbiased && has_mark(plain, "reference-limited")) {
+    if (const auto fit = variance_fit(cells, line, seed)) add(*fit, RateKind::kVariance);
+  }
+  for (const LocalRate& local : fits.local) results.local.push_back({line.begin, local});
+  return results;
 }
 
 }  // namespace
 
-std::vector<RateResult> fit_rates(const std::vector<CellResult>& cells) {
-  std::vector<RateResult> rates;
+RateResults fit_rates(const std::vector<CellResult>& cells, int threads) {
+  std::vector<Line> lines;
   for (std::size_t begin = 0, end = 0; begin < cells.size(); begin = end) {
     while (end < cells.size() && same_line(cells[begin].name, cells[end].name)) ++end;
-    rates.push_back(fit_line(cells, begin, end));
+    lines.push_back({begin, end});
   }
-  return rates;
+  std::vector<RateResults> fitted(lines.size());
+  with_threads(threads, [&](int) {
+    tbb::parallel_for(
+        std::size_t{0}, lines.size(), [&](std::size_t i) { fitted[i] = fit_line(cells, lines[i]); },
+        tbb::simple_partitioner());
+  });
+  RateResults all;
+  for (const RateResults& line : fitted) {
+    all.rates.insert(all.rates.end(), line.rates.begin(), line.rates.end());
+    all.local.insert(all.local.end(), line.local.begin(), line.local.end());
+  }
+  return all;
 }
 
 }  // namespace halfslope

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "analysis/compensated_sum.h"
 #include "core/error.h"
 #include "experiments/interrupt.h"
 #include "experiments/parallel.h"
@@ -39,7 +40,11 @@ CellResult result_of(const Plan& plan, const Cell& cell, FoldedCell& folded, con
   folded.data.rounding_mse = facts.rounding_mse;
   result.statistics = summarise(folded.data);
   result.mse = folded.data.mse.mean;
-  for (const ReplicateErrors& errors : folded.data.per_replicate) result.replicate_mse.push_back(errors.mse);
+  result.reference_mse_variance = folded.data.reference_mse_noise;
+  for (const ReplicateErrors& errors : folded.data.per_replicate) {
+    result.replicate_mse.push_back(errors.mse);
+    result.replicate_variance.push_back(errors.variance);
+  }
   result.regions = region_results(scene, folded, result.statistics, shares);
   result.first_bad_replicate = folded.first_bad_replicate;
   result.first_bad_pixel = folded.first_bad_pixel;

@@ -33,10 +33,12 @@ struct CellResult {
   std::int64_t replicates = 0, pixels = 0;
   CellFacts facts;
   CellStatistics statistics;
-  std::vector<double> replicate_mse;  ///< mean squared error of each, the reference's variance in it; empty above
-                                      ///< kMostKept replicates
-  double mse = 0;                     ///< their mean
-  std::vector<RegionResult> regions;  ///< where the scene has several
+  std::vector<double> replicate_mse;       ///< mean squared error of each, the reference's variance in it; empty above
+                                           ///< kMostKept replicates
+  double mse = 0;                          ///< their mean
+  std::vector<double> replicate_variance;  ///< what each adds to the sample variance, as ReplicateErrors; likewise
+  double reference_mse_variance = 0;       ///< of the reference's mean squared error, 2 Σ V_p² / P²
+  std::vector<RegionResult> regions;       ///< where the scene has several
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;
 };
 
@@ -74,8 +76,8 @@ struct Results {
   std::vector<ComparisonFamily> comparisons;
 };
 
-/// The rates of every line of `cells`, on so many threads (0: all). A line whose errors the reference limits, or those
-/// of its unbiased sampler's largest N, has the rate of its sample variance too.
+/// The rates of every line of `cells`, on so many threads (0: all). A line of an unbiased sampler whose plain fit the
+/// reference limits has that of its sample variance too.
 RateResults fit_rates(const std::vector<CellResult>& cells, int threads);
 
 /// What is done with a folded cell beside keeping its statistics: its memory is given back at once, so that a run's

@@ -188,7 +188,13 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
               }
             }
           }
-          moments[cell * channels + c].add(values);
+          Moments& so_far = moments[cell * channels + c];
+          so_far.add(values);
+          const auto n = static_cast<double>(so_far.count);
+          for (std::size_t r = 0; r < chunk; ++r) {
+            const double deviation = values[r] - so_far.mean;
+            part.replicates[first + r].spread += deviation * deviation * (n / (n - 1));
+          }
         }
       }
       if (!progress(static_cast<double>(pass.evaluations()) * static_cast<double>(chunk))) return {};

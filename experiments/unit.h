@@ -14,9 +14,10 @@
 
 namespace halfslope {
 
-/// Sums over a tile's integrals for one replicate: Σ Î, Σ e, Σ |e|, max |e|.
+/// Sums over a tile's integrals for one replicate: Σ Î, Σ e, Σ |e|, max |e|; and Σ (Î − m)² n/(n − 1), m the mean of
+/// the n replicates of the batch up to the end of those worked on together, this one among them.
 struct ReplicateSums {
-  double value = 0, error = 0, abs_error = 0, max_abs_error = 0;
+  double value = 0, error = 0, abs_error = 0, max_abs_error = 0, spread = 0;
 };
 /// Over those of them that lie in one region: Σ e² and Σ e²/(R̂² + 0.01).
 struct SquaredErrors {
