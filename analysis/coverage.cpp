@@ -14,6 +14,7 @@
 #include "analysis/coverage_intervals.h"
 #include "analysis/coverage_rates.h"
 #include "analysis/coverage_stopping.h"
+#include "analysis/coverage_timing.h"
 
 namespace halfslope {
 
@@ -24,6 +25,7 @@ std::span<const CoverageStudyInfo> coverage_studies() {
       {"comparisons", "of the ratios of mean squared errors; false alarms of families, and differences found",
        comparison_coverage, 4000},
       {"stopping", "of an RMSE whose interval decided how many replicates there are", stopping_coverage, 4000},
+      {"timing", "of medians of times, and of efficiencies", timing_coverage, 4000},
   };
   return kStudies;
 }

@@ -104,6 +104,7 @@ Measured measure_cell(const CellFiles& files, const ReferenceImage& reference, c
   result.facts.rounding_mse = data.rounding_mse;
   result.statistics = summarise(data);
   result.mse = data.mse.mean;
+  result.reference_mse_variance = data.reference_mse_noise;
   measured.cell.replicates = data.per_replicate;
   measured.cell.metrics = named_metrics(errors, data, result.statistics);
   return measured;

@@ -18,13 +18,25 @@ struct Line {
   std::size_t begin, end;
 };
 
+/// The replicates that every cell of the line has kept, the first so many: with a target, cells have different numbers.
+std::size_t common_replicates(const std::vector<CellResult>& cells, Line line) {
+  std::size_t common = cells[line.begin].replicate_mse.size();
+  for (std::size_t c = line.begin; c < line.end; ++c) common = std::min(common, cells[c].replicate_mse.size());
+  return common;
+}
+
+std::vector<double> first_of(const std::vector<double>& values, std::size_t count) {
+  return {values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count)};
+}
+
 RateData data_of(const std::vector<CellResult>& cells, Line line) {
   const CellResult& first = cells[line.begin];
+  const std::size_t common = common_replicates(cells, line);
   RateData data;
   bool varied = true;
   for (std::size_t c = line.begin; c < line.end; ++c) {
     data.samples.push_back(static_cast<double>(cells[c].name.samples));
-    data.mse.push_back(first.replicate_mse.empty() ? std::vector<double>{cells[c].mse} : cells[c].replicate_mse);
+    data.mse.push_back(common == 0 ? std::vector<double>{cells[c].mse} : first_of(cells[c].replicate_mse, common));
     data.variance.push_back(cells[c].statistics.variance.value_or(0));
     varied = varied && cells[c].statistics.variance;
   }
@@ -36,10 +48,12 @@ RateData data_of(const std::vector<CellResult>& cells, Line line) {
 
 /// The rate of the sample variance, where every cell has what its replicates add to it.
 std::optional<RateFit> variance_fit(const std::vector<CellResult>& cells, Line line, std::uint64_t seed) {
+  const std::size_t common = common_replicates(cells, line);
   RateData data;
   for (std::size_t c = line.begin; c < line.end; ++c) {
-    const std::vector<double>& spread = cells[c].replicate_variance;
-    if (spread.size() < 2 || !std::ranges::all_of(spread, [](double x) { return std::isfinite(x); })) return {};
+    if (common < 2 || cells[c].replicate_variance.size() < common) return {};
+    const std::vector<double> spread = first_of(cells[c].replicate_variance, common);
+    if (!std::ranges::all_of(spread, [](double x) { return std::isfinite(x); })) return {};
     data.samples.push_back(static_cast<double>(cells[c].name.samples));
     data.mse.push_back(spread);
   }
@@ -54,7 +68,8 @@ RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
   const std::uint64_t seed = hash_text(line_text(first.name), 1);
   LineRates fits = analyse_rates(data_of(cells, line), seed);
   RateFit& plain = fits.plain;
-  if (const auto mark = plain.status.find("deterministic"); first.replicate_mse.empty() && mark != std::string::npos) {
+  if (const auto mark = plain.status.find("deterministic");
+      common_replicates(cells, line) == 0 && mark != std::string::npos) {
     // One number at each N not because there was one replicate: they are not kept, so there is no interval.
     plain.status.replace(mark, std::string("deterministic").size(), "many-replicates");
   }

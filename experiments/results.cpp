@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "analysis/compensated_sum.h"
 #include "core/error.h"
 #include "experiments/interrupt.h"
 #include "experiments/parallel.h"

@@ -37,7 +37,7 @@ struct CellResult {
                                            ///< kMostKept replicates
   double mse = 0;                          ///< their mean
   std::vector<double> replicate_variance;  ///< what each adds to the sample variance, as ReplicateErrors; likewise
-  double reference_mse_variance = 0;       ///< of the reference's mean squared error, 2 Σ V_p² / P²
+  double reference_mse_variance = 0;       ///< of the reference's mean δ² (analysis/reference_noise.h)
   std::vector<RegionResult> regions;       ///< where the scene has several
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;
 };
