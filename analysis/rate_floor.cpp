@@ -12,6 +12,8 @@ namespace {
 
 constexpr std::size_t kFewestForFloor = 5;
 constexpr double kDominated = 0.5;
+/// Where the floor dominates, errors may fall this much as fast as above it.
+constexpr double kMostTail = 1.0 / 3;
 constexpr std::size_t kFewestBeforeFloor = 3, kFewestInFloor = 2;
 
 /// log a, rate, log f.
@@ -108,6 +110,8 @@ std::optional<Floor> find_floor(const LineBootstrap& line, std::span<const doubl
                                         [](double share) { return share > kDominated; });
     const auto end = static_cast<std::size_t>(dominated - fit->share.begin());
     if (end < first + kFewestBeforeFloor || end + kFewestInFloor > last) continue;
+    const double tail = (line.log_rmse()[last - 1] - line.log_rmse()[end]) / std::log(samples[last - 1] / samples[end]);
+    if (tail < fit->rate * kMostTail) continue;  // it slows down, and goes on falling
     if (line.differ_from_zero(fit->residuals, kLineLevel)) continue;
     return Floor{std::move(*fit), first, end};
   }

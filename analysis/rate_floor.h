@@ -31,7 +31,8 @@ struct Floor {
 
 /// A floor is found from the least `first` for which a line is refused (is_bent) and the model with a floor is not, on
 /// [first, J); where f is more than half of the MSE at two N at least (one alone may be an outlier), at least three N
-/// stay below half, and the errors fall before it (rate < 0). Empty where a line does, or nothing fits.
+/// stay below half, the errors of the N that it dominates fall at most a third as fast as the others, and the errors
+/// fall before it (rate < 0). Empty where a line does, or nothing fits.
 std::optional<Floor> find_floor(const LineBootstrap& line, std::span<const double> samples,
                                 std::span<const double> weights);
 
