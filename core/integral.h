@@ -81,8 +81,6 @@ class IntegralSource {
   virtual Regularity regularity() const { return Regularity::kSquareIntegrable; }
   /// f and the densities of techniques(), of a scene of one integral that can be said in one variable.
   virtual std::optional<ExactDensities> exact_densities() const { return std::nullopt; }
-  /// How smooth f is at a uniform point, of a scene whose only technique draws one.
-  virtual Regularity regularity() const { return Regularity::kSquareIntegrable; }
   /// Parts of the image to report on beside the whole, and the part a pixel is in (an index into them).
   virtual std::vector<std::string> regions() const { return {}; }
   virtual int region(int /*pixel*/) const { return 0; }

@@ -22,6 +22,9 @@ void write_tables(const RunFolder& folder, const ImageRequest& request, const Im
   write_file_atomically(folder.path("replicates.csv"), replicates.take_text());
   write_file_atomically(folder.path("tails.csv"), tails_csv(images.results));
   write_file_atomically(folder.path("rates.csv"), rates_csv(images.results));
+  write_file_atomically(folder.path("local_rates.csv"), local_rates_csv(images.results));
+  if (const std::string comparisons = comparisons_csv(images.results); !comparisons.empty())
+    write_file_atomically(folder.path("comparisons.csv"), comparisons);
   write_file_atomically(folder.path("metrics.csv"), metrics_csv(images));
   write_file_atomically(folder.path("convergence.csv"), convergence_csv(images.results));
   write_file_atomically(folder.path("manifest.json"), images_manifest(request, images, name));

@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
+#include "experiments/comparison_results.h"
 #include "experiments/image_cells.h"
 #include "experiments/interrupt.h"
 #include "experiments/parallel.h"
@@ -212,7 +213,10 @@ ImageResults analyze_images(const ImageRequest& request) {
     fail(ExitCode::kBadInput, "no image could be measured:{}", named);
   }
   pair_replicates(images.results, images.cells);
-  images.results.rates = fit_rates(images.results.cells);
+  RateResults fitted = fit_rates(images.results.cells, request.threads);
+  images.results.rates = std::move(fitted.rates);
+  images.results.local_rates = std::move(fitted.local);
+  images.results.comparisons = compare_cells(images.results.cells, request.threads);
   return images;
 }
 

@@ -25,7 +25,6 @@ class AnalyticSource final : public IntegralSource {
   std::optional<double> variance() const override { return integrand_.variance; }
   Regularity regularity() const override { return integrand_.regularity; }
   std::optional<ExactDensities> exact_densities() const override { return integrand_.exact; }
-  Regularity regularity() const override { return integrand_.regularity; }
   std::string fingerprint() const override { return fingerprint_; }
 
  private:

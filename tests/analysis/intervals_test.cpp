@@ -146,7 +146,7 @@ TEST(LogMeanBootstrapT, IsEmptyWhereNothingIsKnown) {
   EXPECT_FALSE(log_mean_bootstrap_t(rare, 1));
   EXPECT_FALSE(log_mean_bootstrap_t(std::vector<double>{1, 2}, 1));
   EXPECT_FALSE(log_mean_bootstrap_t(std::vector<double>{1}, 1));
-  EXPECT_FALSE(log_mean_bootstrap_t({}, 1));
+  EXPECT_FALSE(log_mean_bootstrap_t(std::vector<double>(), 1));
   EXPECT_FALSE(log_mean_bootstrap_t(std::vector<double>(64, 0.0), 1));
   EXPECT_FALSE(log_mean_bootstrap_t(std::vector<double>(64, 0.7), 1));
   std::vector<double> values = squared_normals(64, 1);

@@ -205,7 +205,8 @@ TEST(Stages, ThePlanShowsTheEstimate) {
   const Keys keys = {{"scene", "quarterdisk"}, {"samplers", "independent,halton"}, {"samples", "4"}};
   const auto described = [&](const Keys& more) {
     const Spec spec = spec_of(with(keys, more));
-    return describe_plan(spec, make_plan(spec, Catalogue::built_in()));
+    const Catalogue catalogue = Catalogue::built_in();
+    return describe_plan(spec, make_plan(spec, catalogue), catalogue);
   };
   const std::string five = described({{"target", "rmse ±5%"}});
   EXPECT_THAT(five, HasSubstr("in at most 8 units of work, 260 to 1.64e+04 integrand evaluations\n"));

@@ -33,7 +33,7 @@ TEST(TheoryColumn, HoldsTheRatesThatAreMeasured) {
     const std::string theory = rates.text(r, "theory");
     line += (theory.empty() ? "-" : theory) + " ";
     if (theory.empty()) continue;
-    EXPECT_NEAR(*rates.number(r, "rate"), *rates.number(r, "theory"), 0.15) << what;
+    EXPECT_NEAR(rates.number(r, "rate"), rates.number(r, "theory"), 0.15) << what;
   }
   EXPECT_EQ(found, promised);
 }
