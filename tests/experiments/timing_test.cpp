@@ -25,9 +25,12 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-const std::map<std::string, std::string> kToy = {
-    {"scene", "mis-toy"}, {"estimators", "bsdf,balance"}, {"samplers", "independent,n-rooks"},
-    {"samples", "4,16"},  {"replicates", "20"},           {"timing", "3"}};
+const std::map<std::string, std::string> kToy = {{"scene", "mis-toy"},
+                                                 {"estimators", "light,balance"},
+                                                 {"samplers", "independent,n-rooks"},
+                                                 {"samples", "4,16"},
+                                                 {"replicates", "20"},
+                                                 {"timing", "3"}};
 
 std::map<std::string, std::string> toy_with(const std::string& key, const std::string& value) {
   auto keys = kToy;
@@ -137,9 +140,11 @@ TEST(Timing, OfPixelsThatAreKnownThereIsNone) {
     plan.scenes[0].pixels = pixels;
     return time_cells(plan, Catalogue::built_in().samplers, 3, "", true).at(0);
   };
-  EXPECT_EQ(times(sampled).pixels, static_cast<int>(sampled.size()));
+  EXPECT_EQ(times(sampled).pixels, 32);  // the most that there are
   EXPECT_EQ(times(sampled).runs.size(), 3u);
   EXPECT_THAT(times(known).runs, IsEmpty());
+  known.insert(known.begin(), sampled.begin(), sampled.begin() + 3);
+  EXPECT_EQ(times(known).pixels, 3);
 }
 
 TEST(Timing, StopsWhereASignalComes) {
