@@ -100,7 +100,11 @@ TEST(Theory, WhatIsWrongIsFound) {
               *row(outcome.theory, "exact-variance", "balance").expected / 4, 1e-12);
   // Were the measured variance another than it is, by 60 %, 256 replicates tell: their interval is ± 45 % at most.
   for (CellResult& cell : outcome.results.cells) cell.statistics.variance = *cell.statistics.variance * 2.5;
-  const std::vector<Reference> references(1, Reference{{0.5}, {0}, 0.5, 0, 0, "closed form", 0, 0});
+  Reference reference;
+  reference.value = {0.5};
+  reference.variance = {0};
+  reference.mean = 0.5;
+  const std::vector<Reference> references = {reference};
   const std::vector<std::string> exact = {"exact-variance"}, bound = {"balance-bound"};
   const TheoryReport off = check_theory(exact, outcome.plan, outcome.results, references);
   EXPECT_EQ(off.violated(), off.rows.size());
