@@ -16,8 +16,13 @@
 //   F = Σ_k c_k β_k + Σ_samples (y − Σ_k β_k w_k)   and   Σ_samples w wᵀ β = Σ_samples y w:
 //
 // β is the least-squares fit of y to w, where all numbers lie in [0, 1] whatever the densities are. The right sum of F
-// is 1ᵀ(b − A β), as Σ_k w_k = 1, so that sums over the samples of w wᵀ and y w are all there is to keep. A sample at
-// which every density is 0 has w = 0 and adds nothing.
+// is 1ᵀ(b − A β), as Σ_k w_k = 1, so that sums over the samples of w wᵀ and y w are all there is to keep.
+//
+// Samples that are worth nothing count too: the fit has to know how often f is 0. Where one comes with every density 0,
+// as those of rendered scenes do that meet no light, it stands for an outcome that its technique alone has: w is 1 for
+// that technique and 0 for the others. On the space with such outcomes every density integrates to 1 again, so nothing
+// above changes. Only where several techniques may draw the same worthless direction (bsdf and cosine; light and bsdf
+// behind a blocker) does telling them apart cost something: the variance is then a little above the least.
 //
 //   direct        β from all the samples that it is used on. F is then Σ_k α_k, the paper's direct estimator. Its bias
 //                 falls as 1/N, its standard error as 1/√N.

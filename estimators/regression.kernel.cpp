@@ -5,15 +5,15 @@
 namespace halfslope::kernel {
 namespace {
 
-/// The balance heuristic's weights, and 0 where every density is 0: such a sample adds nothing.
+/// The balance heuristic's weights; where every density is said to be 0, all to technique `own`, which drew the sample.
 template <class F>
-void balance_weights(const F* ratios, int techniques, F* weights) {
-  const F zero(scalar_t<F>(0));
+void balance_weights(const F* ratios, int techniques, int own, F* weights) {
+  const F zero(scalar_t<F>(0)), one(scalar_t<F>(1));
   F sum = ratios[0];
   for (int k = 1; k < techniques; ++k) sum = sum + ratios[k];
   const auto any = any_density(ratios, techniques);
   const F nan = nan_of(ratios, techniques);
-  for (int k = 0; k < techniques; ++k) weights[k] = select(any, ratios[k] / sum, zero) + nan;
+  for (int k = 0; k < techniques; ++k) weights[k] = select(any, ratios[k] / sum, k == own ? one : zero) + nan;
 }
 
 }  // namespace
@@ -29,7 +29,8 @@ void regress(const FoldCall<T>& call) {
       const T* pdfs = values + static_cast<std::size_t>(call.channels) * call.stride;
       F ratios[kMostTechniques], w[kMostTechniques];
       for (int k = 0; k < call.techniques; ++k) ratios[k] = load<F>(pdfs + static_cast<std::size_t>(k) * call.stride);
-      balance_weights(ratios, call.techniques, w);
+      const int own = call.slot_technique[q];
+      balance_weights(ratios, call.techniques, own, w);
       T* const* out = call.regression;
       const auto add = [&](const F& a, const F& b) {
         T* to = *out++ + p;
@@ -38,7 +39,6 @@ void regress(const FoldCall<T>& call) {
       for (int i = 0; i < call.techniques; ++i) {
         for (int j = 0; j <= i; ++j) add(w[i], w[j]);
       }
-      const int own = call.slot_technique[q];
       for (int c = 0; c < call.channels; ++c) {
         const F y = load<F>(values + static_cast<std::size_t>(c) * call.stride) * (w[own] * F(T(1) / call.counts[own]));
         for (int i = 0; i < call.techniques; ++i) add(y, w[i]);

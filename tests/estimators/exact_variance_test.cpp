@@ -206,5 +206,56 @@ INSTANTIATE_TEST_SUITE_P(
                         0.02516798192969775, 0.006321313862650276, 0.011782112287104043, 0.006537205498049859,
                         0.006681350145779071, 0.007470168631489288}));
 
+/// Of estimators whose variance is that of many rounds, or of single samples.
+struct ManyRounds {
+  const char* scene;
+  double optimal, one_sample_balance, one_sample_power;  ///< of a pair, of a sample, of a sample
+};
+
+// 1024 pairs a replicate, so that estimates are near normal (κ < 5 for all of these, mostly 3) and `optimal` is near
+// its limit, which it misses by a few thousandths. A sample variance of R of them strays by 6 standard errors, √((κ −
+// 1)/R) each, with probability 2e-9.
+void expect_variances_of_many(const ManyRounds& known, int replicates, double tolerance) {
+  const auto scene = make_analytic_scene(known.scene);
+  const double exact = (*scene->closed_form(0))[0];
+  const auto expect = [&](const std::string& estimator, std::uint64_t rounds, double variance) {
+    if (variance < 0) return;  // not known
+    const auto found = mean_of(estimate<double>(
+        *scene, 0, {.estimator = estimator, .rounds = rounds, .replicates = replicates, .seed = 77})[0]);
+    const double measured = found.standard_error * found.standard_error * replicates * static_cast<double>(rounds);
+    if (variance < 1e-12 * exact * exact && variance < 1e-15) {
+      EXPECT_LT(measured, 1e-15) << known.scene << ' ' << estimator;
+    } else {
+      EXPECT_NEAR(measured / variance, 1, tolerance) << known.scene << ' ' << estimator;
+    }
+  };
+  expect("optimal", 1024, known.optimal);
+  expect("one-sample-balance", 1024, known.one_sample_balance);
+  expect("one-sample-power", 1024, known.one_sample_power);
+}
+
+const ManyRounds kManyRounds[] = {
+    {"mis-toy", 0, 0.02465307216702742, -1},
+    {"aligned-phong-cap:n=10,alpha=0.05", 2.3994198006957428e-09, 0.00018161195674077534, 0.00018650459987619192},
+    {"aligned-phong-cap:n=1,alpha=0.2", 5.062842829185431e-08, 0.0014396303483194537, 0.0015484511621609717},
+    {"aligned-phong-cap:n=10000,alpha=0.01", 0.002283754795031826, 0.06975855154192127, 0.09304825028748535},
+    {"aligned-phong-cap:n=100,alpha=0.01", 5.260121443097872e-11, 2.5120675057910863e-05, 2.5372471376613944e-05},
+    {"aligned-phong-cap:n=10,alpha=0.01", 6.295576455579766e-15, 3.020114568101539e-07, 3.0234340078851757e-07},
+    {"aligned-phong-cap:n=1000,alpha=0.8", 0, 0.962405680576658, 0.9878677824598142},
+    {"aligned-phong-cap:n=10000,alpha=0.8", 0, 0.994715123702673, 0.9987773379157294},
+    {"aligned-phong-cap:n=100,alpha=0.8", 1.4062070720452e-16, 0.7770654391716872, 0.8855087508516521},
+    {"aligned-phong-cap:n=10,alpha=0.2", 0.00011104759104094028, 0.02654079267877529, 0.034336426879201125},
+    {"aligned-phong-cap:n=10000,alpha=0.2", 0, 0.9468378186105161, 0.9814856706692482},
+};
+
+TEST(ExactVariance, OfOptimalWeightsAndSingleSamples) {
+  for (const ManyRounds& known : kManyRounds) expect_variances_of_many(known, 1 << 11, 6 * std::sqrt(4.0 / (1 << 11)));
+}
+
+// √(2/R) is 0.5 % here, and 0.03 more than 5 of them.
+TEST(LongExactVariance, OfOptimalWeightsAndSingleSamplesWithinThreePercent) {
+  for (const ManyRounds& known : kManyRounds) expect_variances_of_many(known, 1 << 16, 0.03);
+}
+
 }  // namespace
 }  // namespace halfslope
