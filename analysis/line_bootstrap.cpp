@@ -70,29 +70,36 @@ LineBootstrap::LineBootstrap(std::span<const std::vector<double>> mse, const Ref
     log_rmse_.push_back(0.5 * std::log(corrected));
     for (std::size_t r = 0; r < n; ++r) deviations[j * n + r] = (mse[j][r] - mean) / corrected;
   }
-  // Columns whose means over a resample are wanted: the deviations and their products.
-  std::vector<double> columns = deviations;
-  columns.resize((counts + pairs + 3) * n);  // three of zeros, for the last four at once
+  // Columns whose means over a resample are wanted: the deviations and, of not too many N, their products.
+  const bool paired = counts <= kMostPaired;
+  const std::size_t wanted = counts + (paired ? pairs : 0);
+  std::vector<double> columns = deviations, product(n);
+  columns.resize((wanted + 3) * n);  // three of zeros, for the last four at once
   covariance_.resize(counts * counts);
   for (std::size_t j = 0, column = counts; j < counts; ++j) {
     for (std::size_t k = j; k < counts; ++k, ++column) {
-      double* product = &columns[column * n];
       for (std::size_t r = 0; r < n; ++r) product[r] = deviations[j * n + r] * deviations[k * n + r];
-      covariance_[j * counts + k] = covariance_[k * counts + j] = mean_of({product, n});
+      if (paired) std::ranges::copy(product, &columns[column * n]);
+      covariance_[j * counts + k] = covariance_[k * counts + j] = mean_of(product);
     }
   }
   if (n < 2) return;
 
   reference_draws_ = reference_draws(reference);
   log_ratio_.resize(kBootstrapResamples * counts);
-  resample_.resize(kBootstrapResamples * pairs);
+  if (paired) {
+    resample_.resize(kBootstrapResamples * pairs);
+  } else {
+    deviations_ = deviations;
+    weights_.resize(kBootstrapResamples * n);
+  }
   std::vector<std::uint32_t> indices(n);
-  std::vector<double> weights(n), means(counts + pairs + 3), ratio(counts);
+  std::vector<double> weights(n), means(wanted + 3), ratio(counts);
   for (std::uint32_t b = 0; b < kBootstrapResamples; ++b) {
     draw_resample(seed, b, static_cast<std::uint32_t>(n), indices);
     std::ranges::fill(weights, 0.0);
     for (const std::uint32_t index : indices) weights[index] += 1;
-    for (std::size_t column = 0; column < counts + pairs; column += 4) {
+    for (std::size_t column = 0; column < wanted; column += 4) {
       const double* first = &columns[column * n];
       const auto four = dot_four(weights, {first, first + n, first + 2 * n, first + 3 * n});
       for (std::size_t k = 0; k < 4 && column + k < means.size(); ++k) {
@@ -100,13 +107,14 @@ LineBootstrap::LineBootstrap(std::span<const std::vector<double>> mse, const Ref
       }
     }
     std::ranges::transform(std::span(means).first(counts), ratio.begin(), [](double mean) { return 1 + mean; });
+    for (std::size_t r = 0; !paired && r < n; ++r) weights_[b * n + r] = static_cast<std::uint16_t>(weights[r]);
     const auto covariance = [&](std::size_t j, std::size_t k, std::size_t p) {
       const double squares = means[counts + p], difference = squares - means[j] * means[k];
       return (j == k && difference <= kRounding * squares ? 0.0 : difference) / (ratio[j] * ratio[k]);
     };
     for (std::size_t j = 0, p = 0; j < counts; ++j) {
       log_ratio_[b * counts + j] = ratio[j] > 0 ? 0.5 * std::log(ratio[j]) : kNone;
-      for (std::size_t k = j; k < counts; ++k, ++p) resample_[b * pairs + p] = covariance(j, k, p);
+      for (std::size_t k = j; paired && k < counts; ++k, ++p) resample_[b * pairs + p] = covariance(j, k, p);
     }
   }
 }
@@ -147,6 +155,7 @@ double LineBootstrap::standard_error(std::span<const double> c) const {
 
 std::optional<LineBootstrap::Deviation> LineBootstrap::deviation(std::size_t resample,
                                                                  std::span<const double> c) const {
+  if (resample_.empty()) return drawn_deviation(resample, c);
   const double* log_ratio = &log_ratio_[resample * counts()];
   const double* covariance = &resample_[resample * counts() * (counts() + 1) / 2];
   double change = 0, variance = 0, scale = 0;
@@ -163,6 +172,34 @@ std::optional<LineBootstrap::Deviation> LineBootstrap::deviation(std::size_t res
   }
   if (!(variance > kRounding * scale * scale)) return std::nullopt;
   return Deviation{change, 0.5 * std::sqrt(variance / static_cast<double>(replicates_ - 1))};
+}
+
+std::optional<LineBootstrap::Deviation> LineBootstrap::drawn_deviation(std::size_t resample,
+                                                                       std::span<const double> c) const {
+  const double* log_ratio = &log_ratio_[resample * counts()];
+  const std::uint16_t* weights = &weights_[resample * replicates_];
+  std::vector<double> influences(replicates_);
+  double change = 0;
+  for (std::size_t j = 0; j < c.size(); ++j) {
+    if (c[j] == 0) continue;
+    if (std::isnan(log_ratio[j])) return std::nullopt;
+    change += c[j] * log_ratio[j];
+    const double factor = c[j] * std::exp(-2 * log_ratio[j]), *deviations = &deviations_[j * replicates_];
+    for (std::size_t r = 0; r < replicates_; ++r) influences[r] += factor * deviations[r];
+  }
+  // About one that was drawn, so that equal ones give an exact 0.
+  const auto first =
+      static_cast<std::size_t>(std::find_if(weights, weights + replicates_, [](auto w) { return w > 0; }) - weights);
+  double sum = 0, squares = 0;
+  for (std::size_t r = 0; r < replicates_; ++r) {
+    const double d = influences[r] - influences[first];
+    sum += weights[r] * d;
+    squares += weights[r] * d * d;
+  }
+  const auto n = static_cast<double>(replicates_);
+  const double variance = (squares - sum * sum / n) / n;
+  if (!(variance > kRounding * squares / n)) return std::nullopt;
+  return Deviation{change, 0.5 * std::sqrt(variance / (n - 1))};
 }
 
 double LineBootstrap::reference_change(std::size_t resample, std::span<const double> c) const {

@@ -30,12 +30,16 @@ struct Combination {
 /// Replicate r has the influence u_r = ½ Σ_j c_j (mse[j][r] − M_j) / (M_j − V̄), the derivative of the combination by
 /// its weight, so the standard error is that of the mean of the u_r. One set of B = 999 resamples of replicates, joint
 /// over all N because samples at different N share points, serves every combination: each keeps the ratios of its
-/// means to those of all, and the covariance of what it drew.
+/// means to those of all, and the covariance of what it drew; beyond kMostPaired N, whose pairs would be too many, what
+/// it drew, from which every combination then takes J' R steps, J' the N that have a c_j.
 ///
 /// The reference's δ² is drawn beside each resample, from the scaled χ² that has its mean and variance (F. E.
 /// Satterthwaite, "An approximate distribution of estimates of variance components", Biometrics Bulletin 2(6), 1946).
 class LineBootstrap {
  public:
+  /// So many N have their covariances kept.
+  static constexpr std::size_t kMostPaired = 24;
+
   /// mse[j] has the same R ≥ 1 finite numbers ≥ 0 for each j, in the same order of replicates, and M_j > V̄ for all j.
   LineBootstrap(std::span<const std::vector<double>> mse, const ReferenceNoise& reference, std::uint64_t seed);
 
@@ -71,6 +75,8 @@ class LineBootstrap {
   };
   /// Empty where some M*_j ≤ V̄ or all influences drawn are equal.
   std::optional<Deviation> deviation(std::size_t resample, std::span<const double> c) const;
+  /// The same from the influences, where no covariances are kept.
+  std::optional<Deviation> drawn_deviation(std::size_t resample, std::span<const double> c) const;
   /// What drawn number `resample` of the reference's error does to a combination; NaN where it leaves no error.
   double reference_change(std::size_t resample, std::span<const double> c) const;
 
@@ -81,6 +87,8 @@ class LineBootstrap {
   std::vector<double> log_ratio_;  ///< of resample b: ½ log of M*_j − V̄ over M_j − V̄, b · J + j; NaN where none
   std::vector<double>
       resample_;  ///< of resample b: covariances of the deviations over their mean ratios, b · J(J + 1)/2 + pair
+  std::vector<double> deviations_;       ///< beyond kMostPaired N: (mse − M_j) / (M_j − V̄), j · R + r
+  std::vector<std::uint16_t> weights_;   ///< and how often resample b drew replicate r, b · R + r
   std::vector<double> reference_draws_;  ///< δ*² − V̄ of resample b; empty where it is known
 };
 

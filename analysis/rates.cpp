@@ -156,18 +156,36 @@ std::vector<LocalRate> local_rates(const RateData& data, const std::optional<Lin
 struct UsedLine {
   Usable usable;
   std::vector<double> samples;
+  std::vector<std::vector<double>> mse;
   std::optional<LineBootstrap> bootstrap;  ///< empty below two N
 };
 
 UsedLine used_line(const RateData& data, std::uint64_t seed) {
-  UsedLine line{find_usable(data), {}, {}};
-  std::vector<std::vector<double>> mse;
+  UsedLine line{find_usable(data), {}, {}, {}};
   for (const std::size_t j : line.usable.counts) {
     line.samples.push_back(data.samples[j]);
-    mse.push_back(data.mse[j]);
+    line.mse.push_back(data.mse[j]);
   }
-  if (mse.size() >= 2) line.bootstrap.emplace(mse, data.reference, seed);
+  if (line.mse.size() >= 2) line.bootstrap.emplace(line.mse, data.reference, seed);
   return line;
+}
+
+/// The search over as many N as have their covariances kept: of more, those nearest to equal steps of log N.
+Search search_line(const RateData& data, const UsedLine& line, std::uint64_t seed) {
+  if (line.samples.size() <= LineBootstrap::kMostPaired) return search_window(*line.bootstrap, line.samples);
+  const double first = std::log(line.samples.front()), last = std::log(line.samples.back());
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < LineBootstrap::kMostPaired; ++i) {
+    const double at = first + (last - first) * static_cast<double>(i) / (LineBootstrap::kMostPaired - 1);
+    const auto nearest =
+        std::ranges::min_element(line.samples, {}, [&](double n) { return std::abs(std::log(n) - at); });
+    const auto index = static_cast<std::size_t>(nearest - line.samples.begin());
+    if (chosen.empty() || chosen.back() != index) chosen.push_back(index);
+  }
+  std::vector<double> samples;
+  std::vector<std::vector<double>> mse;
+  for (const std::size_t j : chosen) samples.push_back(line.samples[j]), mse.push_back(line.mse[j]);
+  return search_window(LineBootstrap(mse, data.reference, seed), samples);
 }
 
 RateFit plain_fit(const RateData& data, const UsedLine& line, const Search& search) {
@@ -203,7 +221,7 @@ LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
   if (!has_line(data)) return {{{}, {}, 0, 0, kTooFew}, {}, {}};
   const UsedLine line = used_line(data, seed);
   const bool certified = line.bootstrap && data.mse[0].size() >= kCertifiedReplicates;
-  const Search search = certified ? search_window(*line.bootstrap, line.samples) : Search();
+  const Search search = certified ? search_line(data, line, seed) : Search();
   return {plain_fit(data, line, search), search.window, local_rates(data, line.bootstrap, line.usable.counts)};
 }
 

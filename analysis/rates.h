@@ -70,7 +70,8 @@ struct LineRates {
 /// a line, up to the largest used (straight_from); marked `asymptotic`. Where they end in a floor: MSE = a·N^(2·rate) +
 /// f over all used N from `samples_lo` on, those above `samples_hi`, which f dominates, telling f alone; marked
 /// `floor`. Weights are kept in resamples. Empty below 16 replicates, below four N used, and where no four N are on a
-/// line.
+/// line. Of more than LineBootstrap::kMostPaired N those nearest to equal steps of log N are looked at, and by
+/// `pre-asymptotic` and `floor` too.
 ///
 /// local: slopes between neighbouring used N; unlike the others for a single replicate too.
 LineRates analyse_rates(const RateData& data, std::uint64_t seed);

@@ -85,7 +85,10 @@ RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
     results.rates.push_back({line.begin, fit, first.facts.theory, kind});
   };
   add(plain, RateKind::kPlain);
-  if (fits.window) add(*fits.window, RateKind::kWindow);
+  // Where the line is straight over every N its window says nothing new.
+  const bool narrower = fits.window && (fits.window->floor_mse || fits.window->samples_lo > plain.samples_lo ||
+                                        fits.window->samples_hi < plain.samples_hi);
+  if (narrower) add(*fits.window, RateKind::kWindow);
   if (first.facts.unbiased && has_mark(plain, "reference-limited")) {
     if (const auto fit = variance_fit(cells, line, seed)) add(*fit, RateKind::kVariance);
   }

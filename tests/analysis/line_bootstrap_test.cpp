@@ -57,6 +57,23 @@ TEST(LineBootstrap, TheReferencesErrorWidensAndSkewsTheInterval) {
   EXPECT_NEAR(wide.hi - at, above, noise);
 }
 
+TEST(LineBootstrap, ManyNGiveTheIntervalsOfFew) {
+  // Those of three N, whatever others stand beside them, and however their covariances are kept.
+  std::vector<std::vector<double>> mse(LineBootstrap::kMostPaired + 7, std::vector<double>(40));
+  for (std::size_t j = 0; j < mse.size(); ++j) {
+    for (std::size_t r = 0; r < 40; ++r)
+      mse[j][r] = (1 + static_cast<double>((r * (j + 3)) % 11)) / (1.0 + static_cast<double>(j));
+  }
+  const std::vector<std::vector<double>> few(mse.begin(), mse.begin() + 3);
+  std::vector<double> c = {-1, 0.25, 0.75};
+  const ReferenceNoise reference = {0.02, 2 * 0.02 * 0.02};
+  const Interval of_few = *LineBootstrap(few, reference, 5).interval(c);
+  c.resize(mse.size());
+  const Interval of_many = *LineBootstrap(mse, reference, 5).interval(c);
+  EXPECT_NEAR(of_many.lo, of_few.lo, 1e-12);
+  EXPECT_NEAR(of_many.hi, of_few.hi, 1e-12);
+}
+
 TEST(LineBootstrap, WhatNoReplicateMovesIsZeroOrNot) {
   const std::vector<std::vector<double>> alike(3, {1, 1, 1, 1});
   const LineBootstrap line(alike, {}, 1);
