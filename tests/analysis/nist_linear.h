@@ -1,6 +1,6 @@
-// NIST Statistical Reference Datasets, linear regression and analysis of variance: the data, and the coefficients, their
-// standard errors and the residual standard deviations of the printed decimals in multiple precision, which agree with
-// the certified 15 digits (https://www.itl.nist.gov/div898/strd, public domain).
+// NIST Statistical Reference Datasets, linear regression and analysis of variance: the data, and the coefficients,
+// their standard errors and the residual standard deviations of the printed decimals in multiple precision, which agree
+// with the certified 15 digits (https://www.itl.nist.gov/div898/strd, public domain).
 #pragma once
 
 #include <vector>
