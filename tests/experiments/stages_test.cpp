@@ -178,7 +178,7 @@ TEST(Stages, BytesDependOnTheExperimentAlone) {
     return run_files(scope.path(out));
   };
   const auto whole = run("whole", 1);
-  EXPECT_EQ(whole.size(), 4u + 1 + 8);  // tables, the reference, a picture of each cell at N = 16
+  EXPECT_EQ(whole.size(), 7u + 1 + 8);  // tables, the reference, a picture of each cell at N = 16
   expect_same_files(whole, run("threads", 3), "3 threads");
   const std::string journal = journal_of(scope, "whole");
   for (const double share : {0.2, 0.5, 0.9}) {
