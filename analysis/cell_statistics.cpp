@@ -12,38 +12,19 @@ namespace {
 
 std::optional<double> if_finite(double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; }
 
-std::optional<double> if_positive(double value) {
-  return std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
-}
-
-/// A mean squared error corrected for the reference, with the ends of its interval.
-struct Corrected {
-  std::optional<double> value, lo, hi;
-};
-
 /// `member` names the squared error of one replicate, `over_replicates` its moments.
-Corrected corrected(const CellData& data, double ReplicateErrors::*member, const Moments& over_replicates,
-                    double reference_share, double reference_noise, bool exact, bool with_interval) {
+CorrectedMean corrected(const CellData& data, double ReplicateErrors::*member, const Moments& over_replicates,
+                        const ReferencePart& reference, bool exact, bool with_interval) {
   // Errors that are all 0 against an exact reference are known to be 0; any other 0 would be a clamped one.
-  if (exact && reference_share == 0) return {0.0, {}, {}};
-  Corrected result;
-  result.value = if_positive(over_replicates.mean - reference_share);
-  if (!result.value || !with_interval) return result;
+  if (exact && reference.mean == 0) return {0.0, {}, {}};
   std::vector<double> values;
   for (const ReplicateErrors& replicate : data.per_replicate) values.push_back(replicate.*member);
-  const std::optional<Interval> interval = values.empty()
-                                               ? log_mean_interval(data.interval, over_replicates)
-                                               : log_mean_interval(data.interval, values, data.bootstrap_seed);
-  if (interval) {
-    const Interval wide = widened_for_reference(*interval, over_replicates.mean, reference_noise);
-    result.lo = if_positive(std::exp(wide.lo) - reference_share);
-    result.hi = if_positive(std::exp(wide.hi) - reference_share);
+  std::optional<Interval> interval;
+  if (with_interval) {
+    interval = values.empty() ? log_mean_interval(data.interval, over_replicates)
+                              : log_mean_interval(data.interval, values, data.bootstrap_seed);
   }
-  return result;
-}
-
-std::optional<double> root(std::optional<double> square) {
-  return square ? std::optional(std::sqrt(*square)) : std::nullopt;
+  return corrected_mean(over_replicates.mean, interval, reference);
 }
 
 }  // namespace
@@ -75,13 +56,14 @@ CellStatistics summarise(const CellData& data) {
   if (data.mse.mean > 0)
     row.worst_share = if_finite(data.worst_squared_error / (data.mse.mean * static_cast<double>(data.integrals)));
 
-  const Corrected mse = corrected(data, &ReplicateErrors::mse, data.mse, data.reference_mse, data.reference_mse_noise,
-                                  exact, !deterministic);
-  row.rmse = root(mse.value);
-  row.rmse_lo = root(mse.lo);
-  row.rmse_hi = root(mse.hi);
-  const Corrected relmse = corrected(data, &ReplicateErrors::relmse, data.relmse, data.reference_relmse,
-                                     data.reference_relmse_noise, exact, !deterministic);
+  const CorrectedMean mse = corrected(data, &ReplicateErrors::mse, data.mse,
+                                      {data.reference_mse, data.reference_mse_noise}, exact, !deterministic);
+  const CorrectedMean rmse = rooted(mse);
+  row.rmse = rmse.value;
+  row.rmse_lo = rmse.lo;
+  row.rmse_hi = rmse.hi;
+  const CorrectedMean relmse = corrected(data, &ReplicateErrors::relmse, data.relmse,
+                                         {data.reference_relmse, data.reference_relmse_noise}, exact, !deterministic);
   row.relmse = relmse.value;
   row.relmse_lo = relmse.lo;
   row.relmse_hi = relmse.hi;

@@ -74,7 +74,7 @@ void ImageErrors::add(std::span<const double> image) {
   }
 }
 
-SubtractedShare ImageErrors::share(double (*weight)(double)) const {
+ReferencePart ImageErrors::share(double (*weight)(double)) const {
   if (reference_.variance.empty()) return {};
   std::vector<double> weights;
   CompensatedSum sum;
@@ -126,8 +126,8 @@ CellData ImageErrors::data(std::uint64_t bootstrap_seed) const {
   data.reference_mean = mean_of(reference_.value);
   data.reference_mse = reference_.mean_variance();
   data.reference_se = mean_standard_error(reference_);
-  const SubtractedShare plain = share([](double) { return 1.0; });
-  const SubtractedShare relative = share([](double r) { return 1 / (r * r + 0.01); });
+  const ReferencePart plain = share([](double) { return 1.0; });
+  const ReferencePart relative = share([](double r) { return 1 / (r * r + 0.01); });
   data.reference_mse_noise = plain.noise;
   data.reference_relmse = relative.mean;
   data.reference_relmse_noise = relative.noise;
@@ -141,7 +141,7 @@ std::vector<MetricValue> ImageErrors::metrics(const CellData& data, const CellSt
   for (std::size_t m = 0; m < metrics_.size(); ++m) {
     const ImageMetric& metric = image_metrics()[m];
     const std::optional<MetricValue> known = metric_of(metric, data, statistics);
-    const SubtractedShare of_reference = metric.weight ? share(metric.weight) : SubtractedShare();
+    const ReferencePart of_reference = metric.weight ? share(metric.weight) : ReferencePart();
     values.push_back(known ? *known : metric_value(metric, metrics_[m], of_reference, exact, data.bootstrap_seed + m));
   }
   return values;

@@ -44,7 +44,7 @@ class ImageErrors {
   std::optional<MetricValue> half_buffers(std::uint64_t seed) const;
 
  private:
-  SubtractedShare share(double (*weight)(double)) const;
+  ReferencePart share(double (*weight)(double)) const;
 
   const ImageReference& reference_;
   std::vector<Moments> integrals_;

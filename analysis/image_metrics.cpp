@@ -38,10 +38,6 @@ constexpr std::array kMetrics = {
                 },
                 nullptr}};
 
-std::optional<double> if_positive(double value) {
-  return std::isfinite(value) && value > 0 ? std::optional(value) : std::nullopt;
-}
-
 std::optional<double> square(const std::optional<double>& root) {
   return root ? std::optional(*root * *root) : std::nullopt;
 }
@@ -50,32 +46,17 @@ std::optional<double> square(const std::optional<double>& root) {
 
 std::span<const ImageMetric> image_metrics() { return kMetrics; }
 
-MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, const SubtractedShare& share,
+MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, const ReferencePart& reference,
                          bool exact, std::uint64_t seed) {
-  const bool corrected = metric.kind != MetricKind::kAbsolute;
-  const double subtracted = corrected ? share.mean : 0;
-  MetricValue result;
-  if (corrected) result.reference_share = subtracted;
-  if (exact && subtracted == 0) {
-    result.value = 0;
-    return result;
-  }
+  const bool squared = metric.kind != MetricKind::kAbsolute;
+  const ReferencePart part = squared ? reference : ReferencePart();
+  const std::optional<double> share = squared ? std::optional(part.mean) : std::nullopt;
+  if (exact && part.mean == 0) return {0.0, {}, {}, share};
   Moments moments;
   moments.add(replicates);
-  result.value = if_positive(moments.mean - subtracted);
-  if (result.value) {
-    if (const auto interval = log_mean_bootstrap_t(replicates, seed)) {
-      const Interval wide = corrected ? widened_for_reference(*interval, moments.mean, share.noise) : *interval;
-      result.lo = if_positive(std::exp(wide.lo) - subtracted);
-      result.hi = if_positive(std::exp(wide.hi) - subtracted);
-    }
-  }
-  if (metric.kind == MetricKind::kRooted) {
-    for (std::optional<double>* number : {&result.value, &result.lo, &result.hi}) {
-      if (*number) *number = std::sqrt(**number);
-    }
-  }
-  return result;
+  CorrectedMean result = corrected_mean(moments.mean, log_mean_bootstrap_t(replicates, seed), part);
+  if (metric.kind == MetricKind::kRooted) result = rooted(result);
+  return {result.value, result.lo, result.hi, share};
 }
 
 std::optional<MetricValue> metric_of(const ImageMetric& metric, const CellData& data, const CellStatistics& s) {

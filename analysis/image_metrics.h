@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/cell_statistics.h"
+#include "analysis/reference_noise.h"
 
 namespace halfslope {
 
@@ -40,16 +41,10 @@ struct MetricValue {
   std::optional<double> reference_share;  ///< what was subtracted; empty for a metric from which nothing can be
 };
 
-/// What a reference's own error is in the mean of a squared metric: to be subtracted, and how sure that is.
-struct SubtractedShare {
-  double mean = 0;   ///< mean of Var(R) · weight(R)
-  double noise = 0;  ///< mean_square_noise (analysis/reference_noise.h) of the same
-};
-
 /// Of `replicates`, the metric's mean over each image, for a squared one before any root. The interval is that of log
 /// of their mean by log_mean_bootstrap_t, widened_for_reference, less the reference's share; `exact` says that all
 /// errors are known to be 0.
-MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, const SubtractedShare& share,
+MetricValue metric_value(const ImageMetric& metric, std::span<const double> replicates, const ReferencePart& reference,
                          bool exact, std::uint64_t seed);
 
 /// The metrics that a cell's statistics have already, by their very numbers: `mse`, `rmse` and `relmse` of them.

@@ -32,4 +32,22 @@ Interval widened_for_reference(Interval log_interval, double mean, double noise)
   return {centre - std::hypot(centre - log_interval.lo, reach), centre + std::hypot(log_interval.hi - centre, reach)};
 }
 
+CorrectedMean corrected_mean(double mean, const std::optional<Interval>& log_interval, const ReferencePart& part) {
+  const auto corrected = [&](double measured) {
+    const double rest = measured - part.mean;
+    return std::isfinite(rest) && rest > 0 ? std::optional(rest) : std::nullopt;
+  };
+  CorrectedMean result{corrected(mean), {}, {}};
+  if (!result.value || !log_interval) return result;
+  const Interval wide = widened_for_reference(*log_interval, mean, part.noise);
+  result.lo = corrected(std::exp(wide.lo));
+  result.hi = corrected(std::exp(wide.hi));
+  return result;
+}
+
+CorrectedMean rooted(const CorrectedMean& square) {
+  const auto root = [](const std::optional<double>& x) { return x ? std::optional(std::sqrt(*x)) : std::nullopt; };
+  return {root(square.value), root(square.lo), root(square.hi)};
+}
+
 }  // namespace halfslope

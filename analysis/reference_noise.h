@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "analysis/intervals.h"
@@ -33,5 +34,24 @@ double mean_square_noise(std::span<const double> variances, std::size_t channels
 /// the normal quantile z √noise / `mean`, z = 1.96, being independent, add up to √(d² + z² noise/mean²). For `mean` >
 /// 0.
 Interval widened_for_reference(Interval log_interval, double mean, double noise);
+
+/// What a reference's own error is in a mean of squared errors: V̄, to be subtracted, and the variance of mean δ² about
+/// it, which says how sure that is. Of a weighted error both are of w V.
+struct ReferencePart {
+  double mean = 0, noise = 0;
+};
+
+/// A mean of squared errors less the reference's part, and the ends of its 95 % interval. Empty where a number is not
+/// finite or not positive; never 0 instead.
+struct CorrectedMean {
+  std::optional<double> value, lo, hi;
+};
+
+/// `log_interval` is that of log `mean` from the spread over replicates; without it, and where `mean` is no more than
+/// the reference's part, there are no ends.
+CorrectedMean corrected_mean(double mean, const std::optional<Interval>& log_interval, const ReferencePart& part);
+
+/// The root of each.
+CorrectedMean rooted(const CorrectedMean& square);
 
 }  // namespace halfslope

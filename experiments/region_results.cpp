@@ -1,7 +1,5 @@
 #include "experiments/region_results.h"
 
-#include <cmath>
-
 #include "analysis/interval_methods.h"
 #include "analysis/reference_noise.h"
 #include "core/random.h"
@@ -9,28 +7,13 @@
 namespace halfslope {
 namespace {
 
-// Means of squared errors over a part of the image, with the interval of log M.
-struct Squared {
-  std::optional<double> value, lo, hi;
-};
-
-Squared squared(const std::vector<double>& replicates, IntervalMethod method, std::uint64_t seed,
-                double reference_share, double reference_noise) {
+// The mean over replicates of squared errors over a part of the image.
+CorrectedMean mean_of(const std::vector<double>& replicates, IntervalMethod method, std::uint64_t seed,
+                      const ReferencePart& reference) {
   Moments moments;
   moments.add(std::span<const double>(replicates));
-  Squared result;
-  if (!std::isfinite(moments.mean) || moments.mean - reference_share <= 0) return result;
-  result.value = moments.mean - reference_share;
-  if (const auto interval = log_mean_interval(method, replicates, seed)) {
-    const Interval wide = widened_for_reference(*interval, moments.mean, reference_noise);
-    const double lo = std::exp(wide.lo) - reference_share, hi = std::exp(wide.hi) - reference_share;
-    if (lo > 0) result.lo = lo;
-    if (hi > 0 && std::isfinite(hi)) result.hi = hi;
-  }
-  return result;
+  return corrected_mean(moments.mean, log_mean_interval(method, replicates, seed), reference);
 }
-
-std::optional<double> root(const std::optional<double>& x) { return x ? std::optional(std::sqrt(*x)) : std::nullopt; }
 
 // Leaves joined into a part of the image: pixel-weighted means for each replicate.
 RegionResult join(const std::string& name, const FoldedCell& folded, const std::vector<std::uint32_t>& leaves,
@@ -56,11 +39,11 @@ RegionResult join(const std::string& name, const FoldedCell& folded, const std::
   for (double& x : mse) x /= pixels;
   for (double& x : relmse) x /= pixels;
   const double integrals = pixels * static_cast<double>(channels), square = integrals * integrals;
-  const Squared plain = squared(mse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed),
-                                share.plain / integrals, 2 * share.plain_squares / square);
-  const Squared relative = squared(relmse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed + 1),
-                                   share.relative / integrals, 2 * share.relative_squares / square);
-  result.rmse = root(plain.value), result.rmse_lo = root(plain.lo), result.rmse_hi = root(plain.hi);
+  const CorrectedMean plain = rooted(mean_of(mse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed),
+                                             {share.plain / integrals, 2 * share.plain_squares / square}));
+  const CorrectedMean relative = mean_of(relmse, folded.data.interval, hash_text(name, folded.data.bootstrap_seed + 1),
+                                         {share.relative / integrals, 2 * share.relative_squares / square});
+  result.rmse = plain.value, result.rmse_lo = plain.lo, result.rmse_hi = plain.hi;
   result.relmse = relative.value, result.relmse_lo = relative.lo, result.relmse_hi = relative.hi;
   return result;
 }
