@@ -4,14 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/status.h"
 #include "core/random.h"
 #include "experiments/parallel.h"
 #include "experiments/results.h"
 
 namespace halfslope {
 namespace {
-
-bool has_mark(const RateFit& fit, std::string_view mark) { return fit.status.find(mark) != std::string::npos; }
 
 /// Cells [begin, end) differ in N only, which rises.
 struct Line {
@@ -77,7 +76,7 @@ RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
     // The slope would be that of the largest values that happened to be met.
     plain.rate.reset();
     plain.interval.reset();
-    plain.status = has_mark(plain, "invalid") ? "invalid;infinite-variance" : "infinite-variance";
+    plain.status = has_mark(plain.status, "invalid") ? "invalid;infinite-variance" : "infinite-variance";
     return {{{line.begin, plain, std::nullopt, RateKind::kPlain}}, {}};
   }
   RateResults results;
@@ -89,7 +88,7 @@ RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
   const bool narrower = fits.window && (fits.window->floor_mse || fits.window->samples_lo > plain.samples_lo ||
                                         fits.window->samples_hi < plain.samples_hi);
   if (narrower) add(*fits.window, RateKind::kWindow);
-  if (first.facts.unbiased && has_mark(plain, "reference-limited")) {
+  if (first.facts.unbiased && has_mark(plain.status, "reference-limited")) {
     if (const auto fit = variance_fit(cells, line, seed)) add(*fit, RateKind::kVariance);
   }
   for (const LocalRate& local : fits.local) results.local.push_back({line.begin, local});
