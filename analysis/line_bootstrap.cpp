@@ -214,7 +214,7 @@ double LineBootstrap::reference_change(std::size_t resample, std::span<const dou
 std::optional<Interval> LineBootstrap::interval(std::span<const double> c) const {
   const double se = standard_error(c);
   if (!(se > 0)) return std::nullopt;
-  const double widened = se * (1 + 1.5 / static_cast<double>(replicates_));
+  const double widened = se * (1 + 3 / static_cast<double>(replicates_));
   std::vector<double> changes;
   changes.reserve(kBootstrapResamples);
   for (std::size_t b = 0; b < kBootstrapResamples; ++b) {

@@ -57,7 +57,7 @@ class LineBootstrap {
   double standard_error(std::span<const double> c) const;
 
   /// 95 % interval of Σ c_j y_j: the value less the upper and the lower quantile over resamples of
-  ///   w · se · T* + Σ_j c_j ½ log(1 + (δ*² − V̄) / (M_j − V̄)),   w = 1 + 1.5/R,
+  ///   w · se · T* + Σ_j c_j ½ log(1 + (δ*² − V̄) / (M_j − V̄)),   w = 1 + 3/R,
   /// T* = (Σ c_j y*_j − Σ c_j y_j) / se* the bootstrap-t, the sum what the reference's error does, at first hand since
   /// it is skewed and no standard error describes it. A resample without a T* (some M*_j ≤ V̄, or equal influences)
   /// counts as beyond both ends. Empty where se = 0 or too few resamples are left.

@@ -27,12 +27,16 @@ struct Range {
   bool empty() const { return !(lo <= hi); }
 };
 
-bool drawn(const ChartPoint& p, const ChartStyle& style) { return std::isfinite(p.y) && (!style.log || p.y > 0); }
+bool drawn(const ChartPoint& p, const ChartStyle& style) { return std::isfinite(p.y) && (!style.log_y || p.y > 0); }
 
 /// A lone curve needs none to be told from others.
 bool has_markers(const LineChart& chart) { return chart.style.intervals == Intervals::kBars || chart.lines.size() > 1; }
 
-bool power_of_two(double x) { return x >= 1 && std::exp2(std::round(std::log2(x))) == x; }
+/// A power of two, or halfway between two of them on a logarithmic scale.
+bool power_of_two(double x) {
+  const double twice = 2 * std::log2(x);
+  return x >= 1 && std::abs(twice - std::round(twice)) < 1e-12;
+}
 
 Axis log_x_axis(const Range& range, bool powers_of_two, const std::string& label) {
   const double pad = range.hi > range.lo ? std::pow(range.hi / range.lo, 0.05) : 2;
@@ -59,10 +63,12 @@ Axis log_y_axis(Range points, const Range& ends, const std::string& label) {
 }
 
 Axis linear_y_axis(Range range, const Range& ends, const ChartStyle& style) {
-  for (const double end : {ends.lo, ends.hi}) {
-    if (!ends.empty()) range.add(end);
+  if (!ends.empty()) {
+    const Range alone = range;
+    range.add(std::max(ends.lo, alone.lo - style.y_reach));
+    range.add(std::min(ends.hi, alone.hi + style.y_reach));
   }
-  if (style.level) range.add(*style.level);
+  for (const Level& level : style.levels) range.add(level.y);
   const double span = range.hi > range.lo ? range.hi - range.lo : 1;
   const double lo = style.y_least.value_or(range.lo - 0.06 * span), hi = std::min(range.hi + 0.06 * span, style.y_most);
   Axis axis{{false, lo, hi}, {}, style.y_label};
@@ -185,12 +191,15 @@ void draw_guides(Canvas& canvas, const Axes& axes, const LineChart& chart) {
   }
   // From above the first points, so that they run beside the lines.
   const double start = first.empty() ? axes.y.scale.hi : 1.25 * first.hi;
-  for (const double slope : chart.style.slopes) {
-    const std::string label = slope == -0.5    ? "½"
-                              : slope == -0.75 ? "¾"
-                              : slope == -1.5  ? "3/2"
-                                               : format_number(-slope);
-    draw_slope_guide(canvas, axes, samples.lo, start, slope, "\u2212" + label);
+  for (const double slope : chart.style.slopes)
+    draw_slope_guide(canvas, axes, samples.lo, start, slope, slope_label(slope));
+}
+
+void draw_levels(Canvas& canvas, const Axes& axes, const std::vector<Level>& levels) {
+  for (const auto& [y, label] : levels) {
+    const Position left = axes.at(axes.x.scale.lo, y), right = axes.at(axes.x.scale.hi, y);
+    canvas.line({left, right}, label.empty() ? Stroke{kInkGrey, 0.8} : Stroke{kInkGrey, 0.5, {1, 1.6}});
+    canvas.text({right.x + 2, right.y + 0.36 * kSmallSize}, label, {.size = kSmallSize, .ink = kInkGrey});
   }
 }
 
@@ -221,13 +230,14 @@ std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const
         y.add(p.y);
         powers = powers && power_of_two(p.x);
         for (const auto& end : {p.lo, p.hi}) {
-          if (end && std::isfinite(*end) && (!style->log || *end > 0)) ends.add(*end);
+          if (end && std::isfinite(*end) && (!style->log_y || *end > 0)) ends.add(*end);
         }
       }
     }
   }
   if (x.empty()) return std::nullopt;
-  if (style->log) return ChartScales{log_x_axis(x, powers, style->x_label), log_y_axis(y, ends, style->y_label), {}};
+  const Axis vertical = style->log_y ? log_y_axis(y, ends, style->y_label) : linear_y_axis(y, ends, *style);
+  if (style->log_x) return ChartScales{log_x_axis(x, powers, style->x_label), vertical, {}};
   // A scale that ends just short of a round number ends there.
   double hi = x.hi > 0 ? x.hi : 1;
   if (const auto ticks = linear_ticks(0, 1.02 * hi, 7); !ticks.empty()) hi = std::max(hi, ticks.back().value);
@@ -237,17 +247,18 @@ std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const
     const double end = hi / style->x_above_unit;
     above = Axis{{false, 0, end}, linear_ticks(0, end, 7), style->x_above_label};
   }
-  return ChartScales{axis, linear_y_axis(y, ends, *style), above};
+  return ChartScales{axis, vertical, above};
+}
+
+bool has_labelled_guides(const ChartStyle& style) {
+  return !style.slopes.empty() || std::ranges::any_of(style.levels, [](const Level& l) { return !l.label.empty(); });
 }
 
 double height_above(const ChartStyle& style) { return style.x_above_label.empty() ? 0 : kHeightOfXAxis - 2; }
 
 void draw_chart(Canvas& canvas, const Axes& axes, const std::optional<Axis>& x_above, const LineChart& chart) {
   axes.draw_grid(canvas);
-  if (chart.style.level) {
-    canvas.line({axes.at(axes.x.scale.lo, *chart.style.level), axes.at(axes.x.scale.hi, *chart.style.level)},
-                {kInkGrey, 0.8});
-  }
+  draw_levels(canvas, axes, chart.style.levels);
   draw_guides(canvas, axes, chart);
   axes.draw_frame(canvas);
   if (x_above) draw_x_above(canvas, axes, *x_above);
@@ -277,6 +288,14 @@ void draw_legend(Canvas& canvas, const LineChart& chart, Position at, double wid
                 {.size = kSmallSize});
     canvas.text({at.x + width, at.y}, line.note, {.size = kSmallSize, .anchor = Anchor::kEnd});
   }
+}
+
+std::string slope_label(double slope) {
+  const double size = std::abs(slope);
+  return (slope < 0 ? "\u2212" : "") + (size == 0.5    ? std::string("½")
+                                        : size == 0.75 ? std::string("¾")
+                                        : size == 1.5  ? std::string("3/2")
+                                                       : format_number(size));
 }
 
 std::string slope_note(double slope, const std::optional<Interval>& interval) {

@@ -34,14 +34,22 @@ struct ChartLine {
 /// lines of one chart apart.
 enum class Intervals { kBars, kBands };
 
+/// A line across at a height: thin, or dotted where it has a label, which stands to the right.
+struct Level {
+  double y;
+  std::string label = {};
+};
+
 /// What is drawn around and between the lines.
 struct ChartStyle {
   std::string x_label, y_label;
-  bool log = true;  ///< both scales; else both are linear, and x begins at 0
+  bool log_x = true, log_y = true;  ///< else linear; a linear x begins at 0
   Intervals intervals = Intervals::kBars;
-  std::vector<double> slopes = {};                          ///< of dotted guides; for logarithmic scales
-  std::optional<double> level = std::nullopt;               ///< a thin line across
-  std::optional<double> y_least = std::nullopt;             ///< where a linear y scale begins
+  std::vector<double> slopes = {};               ///< of dotted guides; for logarithmic scales
+  std::vector<Level> levels = {};                ///< for a linear y scale
+  std::optional<double> y_least = std::nullopt;  ///< where a linear y scale begins
+  double y_reach =
+      std::numeric_limits<double>::infinity();              ///< beyond all points, in which a linear y counts intervals
   double y_most = std::numeric_limits<double>::infinity();  ///< lines are cut off above
   /// A second scale above the frame, x / x_above_unit, with this label; none where it is empty.
   std::string x_above_label = {};
@@ -63,6 +71,9 @@ struct ChartScales {
 };
 std::optional<ChartScales> chart_scales(std::span<const LineChart> charts, const std::string& group);
 
+/// Whether labels stand right of the frame.
+bool has_labelled_guides(const ChartStyle& style);
+
 /// Space above the frame that the second scale takes, in points.
 double height_above(const ChartStyle& style);
 
@@ -74,6 +85,9 @@ void draw_chart(Canvas& canvas, const Axes& axes, const std::optional<Axis>& x_a
 void draw_legend(Canvas& canvas, const LineChart& chart, Position at, double width, const std::string& notes_title);
 inline constexpr double kLegendLine = 9.5;
 double legend_width(const LineChart& chart);
+
+/// "−½", "−¾", "−3/2", "−0.625".
+std::string slope_label(double slope);
 
 /// "−0.50 [−0.62, −0.40]", as far as it is known.
 std::string slope_note(double slope, const std::optional<Interval>& interval);

@@ -61,11 +61,15 @@ void read_rates(const std::filesystem::path& path, std::vector<ConvergenceLine>&
     if (!line) continue;
     const auto from = table.number(r, "samples_lo"), to = table.number(r, "samples_hi");
     const double width = from && to && *from > 0 ? *to / *from : 0;
+    const std::string& status = table.text(r, "status");
+    const bool further = status == "asymptotic" || status == "floor";
+    if (further && width > 0 && table.number(r, "rate")) line->window = {*from, *to};
     double& best = widest[static_cast<std::size_t>(line - lines.data())];
     if (width <= best) continue;
     best = width;
     line->rate = table.number(r, "rate");
-    line->rate_status = table.text(r, "status");
+    line->rate_status = status;
+    line->theory = table.number(r, "theory");
     const auto lo = table.number(r, "rate_lo"), hi = table.number(r, "rate_hi");
     line->rate_interval = lo && hi ? std::optional(Interval{*lo, *hi}) : std::nullopt;
   }
@@ -97,16 +101,8 @@ std::vector<ConvergenceLine> read_convergence_lines(const std::filesystem::path&
       continue;
     ConvergenceLine* line = find_line(lines, table, r);
     if (!line) {
-      lines.push_back({table.text(r, "scene"),
-                       table.text(r, "estimator"),
-                       table.text(r, "sampler"),
-                       table.text(r, "precision"),
-                       {},
-                       0,
-                       "",
-                       {},
-                       {},
-                       ""});
+      lines.push_back(
+          {table.text(r, "scene"), table.text(r, "estimator"), table.text(r, "sampler"), table.text(r, "precision")});
       line = &lines.back();
     }
     if (!(table.required_number(r, "samples") > 0)) {
@@ -156,6 +152,26 @@ void read_times(const std::filesystem::path& folder, std::vector<ConvergenceLine
     const std::size_t untimed = std::erase_if(line.points, [](const LinePoint& p) { return !p.seconds; });
     line.left_out += untimed;
     if (untimed > 0 && line.status.empty()) line.status = "not timed";
+  }
+}
+
+void read_local_rates(const std::filesystem::path& folder, std::vector<ConvergenceLine>& lines) {
+  const std::filesystem::path path = folder / "local_rates.csv";
+  if (!std::filesystem::exists(path)) {
+    fail(ExitCode::kBadInput, "{}: there is no local_rates.csv; repeat the run's command with --overwrite to make one",
+         folder.string());
+  }
+  const CsvReader table = CsvReader::open(path);
+  for (std::size_t r = 0; r < table.size(); ++r) {
+    ConvergenceLine* line = find_line(lines, table, r);
+    const auto rate = table.number(r, "rate");
+    if (!line || !rate) continue;
+    const double from = table.required_number(r, "samples_lo"), to = table.required_number(r, "samples_hi");
+    if (!(from > 0 && to > from)) {
+      fail(ExitCode::kBadInput, "{}: found samples_lo {} and samples_hi {}; two rising positive numbers are allowed",
+           path.string(), table.text(r, "samples_lo"), table.text(r, "samples_hi"));
+    }
+    line->local_rates.push_back({from, to, *rate, table.number(r, "rate_lo"), table.number(r, "rate_hi")});
   }
 }
 

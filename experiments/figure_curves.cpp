@@ -104,9 +104,9 @@ LinePage pair_correlation_page(const std::vector<MeasuredMean>& means, bool side
                   : dims == 2 ? "distance r · √N"
                               : fmt::format("distance r · N^(1/{})", dims);
   style.y_label = "pair correlation g(r)";
-  style.log = false;
+  style.log_x = style.log_y = false;
   style.intervals = Intervals::kBands;
-  style.level = 1;
+  style.levels = {{1}};
   style.y_least = 0;
   style.y_most = kHighest;
   add_charts(page, "pcf", style, curve_lines(means, "pcf:r=", per_distance), side_by_side);
@@ -121,9 +121,9 @@ LinePage radial_spectrum_page(const std::vector<MeasuredMean>& means, bool side_
   ChartStyle style;
   style.x_label = same ? "frequency f" : "frequency f/√N";
   style.y_label = "radial mean power P(f)";
-  style.log = false;
+  style.log_x = style.log_y = false;
   style.intervals = Intervals::kBands;
-  style.level = 1;
+  style.levels = {{1}};
   style.y_least = 0;
   style.y_most = kHighest;
   if (same && !means.empty()) {
@@ -134,7 +134,7 @@ LinePage radial_spectrum_page(const std::vector<MeasuredMean>& means, bool side_
   add_charts(page, "power", style, curve_lines(means, "radial-spectrum:f=", unit), side_by_side);
   if (auto lines = curve_lines(means, "anisotropy:f=", unit); !lines.empty()) {
     style.y_label = "anisotropy (dB)";
-    style.level = 0;
+    style.levels = {{0}};
     style.y_least = std::nullopt;
     style.y_most = std::numeric_limits<double>::infinity();
     add_charts(page, "anisotropy", style, std::move(lines), side_by_side);

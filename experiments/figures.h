@@ -54,6 +54,8 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
 Canvas draw_convergence_figure(const FigureRequest& request, const Catalogue& catalogue);
 /// `work-precision`: RMSE against CPU time of a run folder.
 Canvas draw_work_precision_figure(const FigureRequest& request, const Catalogue& catalogue);
+/// `rates`: slopes between neighbouring N of a run folder.
+Canvas draw_rates_figure(const FigureRequest& request, const Catalogue& catalogue);
 /// `discrepancy`: measures of samplers' points against N.
 Canvas draw_discrepancy_figure(const FigureRequest& request, const Catalogue& catalogue);
 /// `pcf`: how often points lie at each distance from each other.

@@ -32,7 +32,7 @@ struct Plan {
       most_lines = std::max(most_lines, chart.lines.size());
       if (const auto scales = chart_scales(charts, chart.group)) y_axis = std::max(y_axis, width_of_y_axis(scales->y));
       header = std::max(header, height_above(chart.style) + (chart.title.empty() ? 3 : kPanelHeader));
-      if (!chart.style.slopes.empty()) right = kGuideMargin;
+      if (has_labelled_guides(chart.style)) right = kGuideMargin;
     }
     const bool beside = single && page.legends;
     column = beside ? std::clamp(kPageWidth - kGap - 3 - legend_width(charts.front()), 230.0, 345.0)

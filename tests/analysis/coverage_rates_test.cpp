@@ -23,7 +23,7 @@ TEST(RateCoverage, IntervalsHoldTheRateOfWalksAndMixtures) {
 }
 
 TEST(RateCoverage, SixteenReplicatesAreEnough) {
-  for (const RateLaw& law : {walks(), owen_like(1.65)}) {
+  for (const RateLaw& law : {walks(), owen_like(1.65), owen_like(2)}) {
     for (const CoverageRow& row : measure_rates(law, 16, ReferenceUse::kCarried, kShort)) {
       EXPECT_GE(row.coverage(), 0.89) << row.law << row.method;  // of 92 %: 3.5 standard errors; no upper bound
     }

@@ -18,7 +18,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 LineChart curve(std::vector<ChartPoint> points, double y_most = 4) {
   LineChart chart{"", "g", {}, {{"a", "a", "", 0, std::move(points)}}};
-  chart.style.log = false;
+  chart.style.log_x = chart.style.log_y = false;
   chart.style.intervals = Intervals::kBands;
   chart.style.y_least = 0;
   chart.style.y_most = y_most;

@@ -238,12 +238,54 @@ TEST_F(ConvergenceFigure, WorkPrecisionStandsOverTime) {
   EXPECT_THAT(texts(document), Contains("CPU seconds an integral"));
 }
 
+// Slopes halfway between their N, hollow outside the window, with a level for what theory says.
+TEST_F(ConvergenceFigure, RatesStandBetweenTheirN) {
+  const std::string run = write_run({{"mean", "a", 4, 0.5, 0.4, 0.7}, {"mean", "b", 4, 0, 0, 0, "exact"}});
+  const auto ended = [&] { return command({"figure", "rates", "--run", run, "-o", (folder_ / "r.svg").string()}); };
+  EXPECT_EQ(ended().code, 3);
+  EXPECT_THAT(ended().err, HasSubstr("there is no local_rates.csv"));
+  const std::string head = "scene,estimator,sampler,precision,samples_lo,samples_hi,rate,rate_lo,rate_hi\n";
+  std::ofstream(folder_ / "my run/local_rates.csv") << head + "\"toy:n=1,k=2\",mean,a,f64,16,4,-1,,\n";
+  EXPECT_EQ(ended().code, 3);
+  EXPECT_THAT(ended().err, HasSubstr("samples_lo 16 and samples_hi 4"));
+  std::ofstream(folder_ / "my run/local_rates.csv") << head +
+                                                           "\"toy:n=1,k=2\",mean,a,f64,4,16,-0.25,-0.4,-0.1\n"
+                                                           "\"toy:n=1,k=2\",mean,a,f64,16,64,-0.5,-9,9\n"
+                                                           "\"toy:n=1,k=2\",mean,a,f64,64,256,-0.75,,\n"
+                                                           "\"toy:n=1,k=2\",mean,b,f64,4,16,,,\n"
+                                                           "other,mean,a,f64,64,256,-7,,\n";
+  std::ofstream(folder_ / "my run/rates.csv")
+      << "scene,estimator,sampler,precision,rate,rate_lo,rate_hi,samples_lo,samples_hi,theory,status\n"
+         "\"toy:n=1,k=2\",mean,a,f64,-0.45,-0.5,-0.4,4,256,-0.5,pre-asymptotic\n"
+         "\"toy:n=1,k=2\",mean,a,f64,-0.62,-0.7,-0.5,16,256,-0.5,asymptotic\n";
+  ASSERT_EQ(ended().code, 0);
+  pugi::xml_document document;
+  ASSERT_TRUE(document.load_file((folder_ / "r.svg").c_str()));
+  EXPECT_THAT(texts(document),
+              AllOf(Contains("rate over all N [95 %], theory"), Contains("−0.45 [−0.50, −0.40], −½"), Contains("−½"),
+                    Contains("rate between neighbouring N"), Contains("exact"), Contains(HasSubstr("Hollow"))));
+  const LogMap x(place_of(document, "16", true), 16, place_of(document, "64", true), 64);
+  const LinearMap y(place_of(document, "−0.2", false), -0.2, place_of(document, "−0.6", false), -0.6);
+  const auto group = document.select_node("//g").node();
+  std::vector<double> samples, rates;
+  std::vector<std::string> fills;
+  for (const auto& circle : group.children("circle")) {
+    samples.push_back(x.value(circle.attribute("cx").as_double()));
+    rates.push_back(y.value(circle.attribute("cy").as_double()));
+    fills.emplace_back(circle.attribute("fill").value());
+  }
+  using ::testing::DoubleNear;
+  EXPECT_THAT(samples, ElementsAre(DoubleNear(8, 0.01), DoubleNear(32, 0.04), DoubleNear(128, 0.15)));
+  EXPECT_THAT(rates, ElementsAre(DoubleNear(-0.25, 1e-4), DoubleNear(-0.5, 1e-4), DoubleNear(-0.75, 1e-4)));
+  EXPECT_THAT(fills, ElementsAre("#ffffff", "#0072b2", "#0072b2"));
+}
+
 TEST(ConvergencePanels, AreSmallEnoughToRead) {
   std::vector<ConvergenceLine> lines;
   const auto add = [&](const std::string& scene, int estimators, int samplers) {
     for (int e = 0; e < estimators; ++e) {
       for (int s = 0; s < samplers; ++s)
-        lines.push_back({scene, "e" + std::to_string(e), "s" + std::to_string(s), "f32", {}, 0, "", {}, {}, ""});
+        lines.push_back({scene, "e" + std::to_string(e), "s" + std::to_string(s), "f32"});
     }
   };
   add("x", 2, 4);
