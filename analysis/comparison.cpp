@@ -5,6 +5,7 @@
 #include <map>
 
 #include "analysis/compensated_sum.h"
+#include "analysis/normal.h"
 #include "analysis/status.h"
 
 namespace halfslope {

@@ -1,29 +1,23 @@
 #include "analysis/power.h"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
-#include <numbers>
 
 #include "analysis/moments.h"
+#include "analysis/normal.h"
 
 namespace halfslope {
 namespace {
 
-constexpr double kRangeWidth = 1.96;
-
 // `at` falls or rises with s throughout, so the range's ends are those of s.
 template <class At>
 Prediction over_range(const InfluenceSpread& spread, At at) {
-  const double factor = std::exp(kRangeWidth * spread.log_error);
+  const double factor = std::exp(kNormal975 * spread.log_error);
   const double narrow = at(spread.deviation / factor), wide = at(spread.deviation * factor);
   return {at(spread.deviation), std::min(narrow, wide), std::max(narrow, wide)};
 }
 
 }  // namespace
-
-double normal_quantile(double p) { return boost::math::quantile(boost::math::normal(), p); }
-double normal_probability(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 InfluenceSpread influence_spread(std::span<const double> influences) {
   Moments moments;

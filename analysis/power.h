@@ -28,8 +28,4 @@ Prediction predicted_power(const InfluenceSpread& spread, double difference, dou
 /// The n at which predicted_power is `power`, in [0.5, 1) : (z + Φ⁻¹(power))² s²/difference², without the far tail.
 Prediction predicted_replicates(const InfluenceSpread& spread, double difference, double critical, double power);
 
-/// The value that a normal number stays below with probability p, 0 < p < 1; and that probability.
-double normal_quantile(double p);
-double normal_probability(double x);
-
 }  // namespace halfslope

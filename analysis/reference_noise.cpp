@@ -3,14 +3,10 @@
 #include <cmath>
 
 #include "analysis/compensated_sum.h"
+#include "analysis/normal.h"
 #include "core/assertion.h"
 
 namespace halfslope {
-namespace {
-
-constexpr double kNormalQuantile = 1.959963984540054;  // 97.5 %
-
-}  // namespace
 
 double mean_square_noise(std::span<const double> variances, std::size_t channels, std::span<const double> weights) {
   if (!weights.empty()) assert_equal(weights.size(), variances.size(), "weights of integrals");
@@ -28,7 +24,7 @@ double mean_square_noise(std::span<const double> variances, std::size_t channels
 
 Interval widened_for_reference(Interval log_interval, double mean, double noise) {
   if (!(noise > 0)) return log_interval;
-  const double centre = std::log(mean), reach = kNormalQuantile * std::sqrt(noise) / mean;
+  const double centre = std::log(mean), reach = kNormal975 * std::sqrt(noise) / mean;
   return {centre - std::hypot(centre - log_interval.lo, reach), centre + std::hypot(log_interval.hi - centre, reach)};
 }
 

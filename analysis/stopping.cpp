@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/normal.h"
 #include "analysis/status.h"
 
 namespace halfslope {
-namespace {
-
-constexpr double kNormal975 = 1.959963984540054;  ///< quantile of the standard normal distribution
-
-}  // namespace
 
 std::vector<std::int64_t> replicate_schedule(std::int64_t most, int steps) {
   std::vector<std::int64_t> totals;
