@@ -50,14 +50,15 @@ TEST(PredictedPower, IsThatOfTheTruthOnAverageOverPilots) {
 }
 
 TEST(PredictedPower, TheRangeIsThatOfTheDeviation) {
-  const InfluenceSpread spread = {2, 0.1}, low = {2 * std::exp(-0.196), 0}, high = {2 * std::exp(0.196), 0};
+  constexpr double kReach = 0.1 * kNormal975;
+  const InfluenceSpread spread = {2, 0.1}, low = {2 * std::exp(-kReach), 0}, high = {2 * std::exp(kReach), 0};
   const Prediction power = predicted_power(spread, 0.1, 1.96, 2000), least = predicted_power(high, 0.1, 1.96, 2000);
   EXPECT_NEAR(power.lo, least.value, 1e-12);
   EXPECT_LT(power.lo, power.value);
   EXPECT_LT(power.value, power.hi);
   const Prediction needed = predicted_replicates(spread, 0.1, 1.96, 0.8);
   EXPECT_NEAR(needed.lo, predicted_replicates(low, 0.1, 1.96, 0.8).value, 1e-9 * needed.lo);
-  EXPECT_NEAR(needed.hi / needed.lo, std::exp(4 * 0.196), 1e-9);
+  EXPECT_NEAR(needed.hi / needed.lo, std::exp(4 * kReach), 1e-9);
 }
 
 }  // namespace
