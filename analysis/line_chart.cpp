@@ -189,8 +189,8 @@ void draw_guides(Canvas& canvas, const Axes& axes, const LineChart& chart) {
                                     [&](const ChartPoint& p) { return drawn(p, chart.style); });
     if (begin != line.points.end()) first.add(begin->y);
   }
-  // From above the first points, so that they run beside the lines.
-  const double start = first.empty() ? axes.y.scale.hi : 1.25 * first.hi;
+  if (first.empty()) return;
+  const double start = 1.25 * first.hi;  // from above the first points, so that they run beside the lines
   for (const double slope : chart.style.slopes)
     draw_slope_guide(canvas, axes, samples.lo, start, slope, slope_label(slope));
 }
@@ -298,13 +298,14 @@ std::string slope_label(double slope) {
                                                        : format_number(size));
 }
 
-std::string slope_note(double slope, const std::optional<Interval>& interval) {
+std::string slope_note(double slope, const std::optional<Interval>& interval, const std::string& before,
+                       const std::string& after) {
   const auto number = [](double x) {
     const std::string text = fmt::format("{:.2f}", x);
     return text.starts_with('-') ? "\u2212" + text.substr(1) : text;
   };
   if (!interval) return number(slope);
-  return fmt::format("{} [{}, {}]", number(slope), number(interval->lo), number(interval->hi));
+  return fmt::format("{} {}[{}, {}]{}", number(slope), before, number(interval->lo), number(interval->hi), after);
 }
 
 }  // namespace halfslope

@@ -89,7 +89,8 @@ double legend_width(const LineChart& chart);
 /// "−½", "−¾", "−3/2", "−0.625".
 std::string slope_label(double slope);
 
-/// "−0.50 [−0.62, −0.40]", as far as it is known.
-std::string slope_note(double slope, const std::optional<Interval>& interval);
+/// "−0.50 [−0.62, −0.40]", as far as it is known; `before` and `after` stand at the interval.
+std::string slope_note(double slope, const std::optional<Interval>& interval, const std::string& before = "",
+                       const std::string& after = "");
 
 }  // namespace halfslope

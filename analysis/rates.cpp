@@ -16,7 +16,6 @@ namespace {
 
 /// V̄ is at most this share of V̄ + MSE.
 constexpr double kMostReference = 0.3;
-constexpr double kRoundingReach = 100;
 /// A window whose errors fall no faster, after errors that fell, is a floor.
 constexpr double kFlat = -0.1;
 /// Errors this many times a floor's mean squared error are above it.
@@ -35,41 +34,73 @@ double largest_reference_error(const ReferenceNoise& reference) {
   return reference.mse_variance / reference.mse * boost::math::gamma_p_inv(shape, 0.999);
 }
 
-/// What is wrong with the N of a line, and which remain.
-struct Usable {
-  std::vector<std::size_t> counts;  ///< indices of the N
-  Status status;
+/// What a line's N are worth.
+struct Marks {
+  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false, no_spread = false,
+       heavy_tailed = false;
+
+  bool usable() const { return !(invalid || exact || reference_limited || rounding_limited || no_spread); }
+  void add(const Marks& other) {
+    invalid |= other.invalid;
+    exact |= other.exact;
+    reference_limited |= other.reference_limited;
+    rounding_limited |= other.rounding_limited;
+    no_spread |= other.no_spread;
+    heavy_tailed |= other.heavy_tailed;
+  }
+  Status status() const {
+    Status status;
+    status.mark_if(invalid, "invalid");
+    status.mark_if(exact, "exact");
+    status.mark_if(reference_limited, "reference-limited");
+    status.mark_if(rounding_limited, "rounding-limited");
+    status.mark_if(no_spread, "no-spread");
+    return status;
+  }
 };
+
+/// The marks of each N, and which can be used.
+struct Usable {
+  std::vector<Marks> marks;
+  std::vector<std::size_t> counts;  ///< indices of the N
+  Marks any;                        ///< of all together
+};
+
+Marks marks_of(const RateData& data, std::size_t j, double largest_reference_error) {
+  const std::vector<double>& errors = data.mse[j];
+  const double measured = mean_of(errors), reference = data.reference.mse;
+  const double least =
+      data.variance.empty() ? measured - reference : std::max(data.variance[j], measured - largest_reference_error);
+  Marks marks;
+  marks.invalid = !std::isfinite(measured);
+  marks.exact = measured == 0;
+  marks.reference_limited = !marks.invalid && reference > 0 &&
+                            (measured <= reference || !(reference * (1 - kMostReference) <= kMostReference * least));
+  marks.rounding_limited = measured > 0 && measured < kRoundingReach * data.rounding_mse;
+  marks.no_spread = !marks.invalid && !marks.exact && errors.size() > 1 &&
+                    std::ranges::adjacent_find(errors, std::not_equal_to<>()) == errors.end();
+  marks.heavy_tailed = !data.heavy_tailed.empty() && data.heavy_tailed[j] != 0;
+  return marks;
+}
 
 Usable find_usable(const RateData& data) {
   Usable usable;
-  bool invalid = false, exact = false, reference_limited = false, rounding_limited = false, no_spread = true;
   const double largest_error = largest_reference_error(data.reference);
   for (std::size_t j = 0; j < data.samples.size(); ++j) {
     assert_equal(data.mse[j].size(), data.mse[0].size(), "replicates at each sample count");
-    const double measured = mean_of(data.mse[j]);
-    const double least =
-        data.variance.empty() ? measured - data.reference.mse : std::max(data.variance[j], measured - largest_error);
-    const bool finite = std::isfinite(measured),
-               in_reach =
-                   data.reference.mse > 0 && (measured <= data.reference.mse ||
-                                              !(data.reference.mse * (1 - kMostReference) <= kMostReference * least)),
-               rounded = measured > 0 && measured < kRoundingReach * data.rounding_mse;
-    invalid |= !finite;
-    exact |= measured == 0;
-    reference_limited |= in_reach && finite;
-    rounding_limited |= rounded;
-    no_spread = no_spread && std::ranges::adjacent_find(data.mse[j], std::not_equal_to<>()) == data.mse[j].end();
-    if (finite && measured > 0 && !in_reach && !rounded) usable.counts.push_back(j);
+    Marks& marks = usable.marks.emplace_back(marks_of(data, j, largest_error));
+    if (marks.usable()) usable.counts.push_back(j);
+    marks.heavy_tailed = marks.heavy_tailed && marks.usable();
+    usable.any.add(marks);
   }
-  usable.status.mark_if(invalid, "invalid");
-  usable.status.mark_if(exact, "exact");
-  usable.status.mark_if(reference_limited, "reference-limited");
-  usable.status.mark_if(rounding_limited, "rounding-limited");
-  no_spread = no_spread && data.mse[0].size() > 1 && !invalid && !exact;
-  usable.status.mark_if(no_spread, "no-spread");
-  if (no_spread) usable.counts.clear();
   return usable;
+}
+
+/// Marks of how many replicates there are, and of tails.
+void mark_trust(Status& status, std::size_t replicates, bool heavy_tailed) {
+  status.mark_if(replicates == 1, "deterministic");
+  status.mark_if(replicates > 1 && replicates < kCertifiedReplicates, "few-replicates");
+  status.mark_if(heavy_tailed, "heavy-tailed");
 }
 
 RateFit linear_fit(const LineBootstrap& line, std::span<const double> samples, std::span<const double> weights,
@@ -114,7 +145,7 @@ Search search_window(const LineBootstrap& line, std::span<const double> samples)
   if (!first) return search;
   RateFit tail = linear_fit(line, samples, weights_within(weights, *first, counts), "asymptotic");
   if (!(tail.rate > kFlat) || !(line.log_rmse()[0] > line.log_rmse()[*first])) {
-    search.window = tail;
+    if (2 * (counts - *first) >= counts) search.window = tail;
     return search;
   }
   // Flat, after errors that fell: what is above it may still follow a line.
@@ -134,14 +165,18 @@ Search search_window(const LineBootstrap& line, std::span<const double> samples)
 }
 
 std::vector<LocalRate> local_rates(const RateData& data, const std::optional<LineBootstrap>& line,
-                                   std::span<const std::size_t> used) {
+                                   const Usable& usable) {
   std::vector<LocalRate> rates;
+  const std::vector<std::size_t>& used = usable.counts;
   for (std::size_t j = 0; j + 1 < data.samples.size(); ++j) {
-    LocalRate rate{data.samples[j], data.samples[j + 1], {}, {}};
-    const auto at = std::ranges::find(used, j);
-    if (line && at != used.end() && at + 1 != used.end() && at[1] == j + 1) {
+    Marks marks = usable.marks[j];
+    marks.add(usable.marks[j + 1]);
+    Status status = marks.status();
+    mark_trust(status, data.mse[j].size(), marks.heavy_tailed);
+    LocalRate rate{data.samples[j], data.samples[j + 1], {}, {}, status.text()};
+    if (line && marks.usable()) {
       std::vector<double> c(used.size());
-      const auto i = static_cast<std::size_t>(at - used.begin());
+      const auto i = static_cast<std::size_t>(std::ranges::find(used, j) - used.begin());
       c[i + 1] = 1 / std::log(data.samples[j + 1] / data.samples[j]);
       c[i] = -c[i + 1];
       rate.rate = line->value(c);
@@ -189,12 +224,10 @@ Search search_line(const RateData& data, const UsedLine& line, std::uint64_t see
 }
 
 RateFit plain_fit(const RateData& data, const UsedLine& line, const Search& search) {
-  const std::size_t replicates = data.mse[0].size();
-  Status status = line.usable.status;
+  Status status = line.usable.any.status();
   status.mark_if(search.window && search.window->floor_mse, "floor");
   const bool refused = !status.ok();
-  status.mark_if(replicates == 1, "deterministic");
-  status.mark_if(replicates > 1 && replicates < kCertifiedReplicates, "few-replicates");
+  mark_trust(status, data.mse[0].size(), line.usable.any.heavy_tailed);
   status.mark_if(!refused && search.bent, "pre-asymptotic");
   if (!refused) {
     return linear_fit(*line.bootstrap, line.samples, std::vector<double>(line.samples.size(), 1.0), status.text());
@@ -217,12 +250,17 @@ constexpr const char* kTooFew = "too-few-points";
 
 }  // namespace
 
+bool is_certified(const RateFit& fit) {
+  return fit.interval && !has_mark(fit.status, "few-replicates") && !has_mark(fit.status, "heavy-tailed");
+}
+
 LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
   if (!has_line(data)) return {{{}, {}, 0, 0, kTooFew}, {}, {}};
   const UsedLine line = used_line(data, seed);
   const bool certified = line.bootstrap && data.mse[0].size() >= kCertifiedReplicates;
-  const Search search = certified ? search_line(data, line, seed) : Search();
-  return {plain_fit(data, line, search), search.window, local_rates(data, line.bootstrap, line.usable.counts)};
+  Search search = certified ? search_line(data, line, seed) : Search();
+  if (search.window && line.usable.any.heavy_tailed) search.window->status += ";heavy-tailed";
+  return {plain_fit(data, line, search), search.window, local_rates(data, line.bootstrap, line.usable)};
 }
 
 RateFit fit_rate(const RateData& data, std::uint64_t seed) {

@@ -57,9 +57,13 @@ int analyze_images_command(const AnalyzeImagesArguments& a) {
     for (const SceneReference& reference : images.references) fmt::print("reference {}\n", reference.description);
     fmt::print("\n{}\nTables: {}\n", summary(images.results), out);
   }
+  if (!a.quiet) {
+    for (const ImageProblem& note : images.notes) message("halfslope: {}: {}\n", note.what, note.text);
+  }
   for (const ImageProblem& problem : images.problems) message("halfslope: {}: {}\n", problem.what, problem.text);
   if (images.problems.empty() || a.keep_going) return static_cast<int>(ExitCode::kDone);
-  message("halfslope: the rest, {} images, is analysed; --keep-going makes that no failure\n", images.images);
+  message("halfslope: {} image{} could be read and {} analysed; --keep-going makes that no failure\n", images.images,
+          images.images == 1 ? "" : "s", images.images == 1 ? "is" : "are");
   return static_cast<int>(ExitCode::kBadInput);
 }
 

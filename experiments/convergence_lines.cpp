@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "analysis/status.h"
 #include "core/atomic_file.h"
 #include "core/csv_reader.h"
 #include "core/error.h"
@@ -40,6 +41,8 @@ bool wanted(const std::vector<std::string>& names, const std::string& name) {
   return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
 }
 
+bool certified(const std::string& status) { return status == "ok" || status == "deterministic"; }
+
 void add_row(ConvergenceLine& line, const CsvReader& table, std::size_t row) {
   const auto rmse = table.number(row, "rmse");
   const std::string& status = table.text(row, "status");
@@ -49,7 +52,7 @@ void add_row(ConvergenceLine& line, const CsvReader& table, std::size_t row) {
   }
   const auto positive = [](std::optional<double> x) { return x && *x > 0 ? x : std::nullopt; };
   line.points.push_back({table.required_number(row, "samples"), *rmse, positive(table.number(row, "rmse_lo")),
-                         positive(table.number(row, "rmse_hi")), status == "ok" || status == "deterministic"});
+                         positive(table.number(row, "rmse_hi")), certified(status)});
 }
 
 void read_rates(const std::filesystem::path& path, std::vector<ConvergenceLine>& lines) {
@@ -62,7 +65,7 @@ void read_rates(const std::filesystem::path& path, std::vector<ConvergenceLine>&
     const auto from = table.number(r, "samples_lo"), to = table.number(r, "samples_hi");
     const double width = from && to && *from > 0 ? *to / *from : 0;
     const std::string& status = table.text(r, "status");
-    const bool further = status == "asymptotic" || status == "floor";
+    const bool further = has_mark(status, "asymptotic") || has_mark(status, "floor");
     if (further && width > 0 && table.number(r, "rate")) line->window = {*from, *to};
     double& best = widest[static_cast<std::size_t>(line - lines.data())];
     if (width <= best) continue;
@@ -171,7 +174,8 @@ void read_local_rates(const std::filesystem::path& folder, std::vector<Convergen
       fail(ExitCode::kBadInput, "{}: found samples_lo {} and samples_hi {}; two rising positive numbers are allowed",
            path.string(), table.text(r, "samples_lo"), table.text(r, "samples_hi"));
     }
-    line->local_rates.push_back({from, to, *rate, table.number(r, "rate_lo"), table.number(r, "rate_hi")});
+    line->local_rates.push_back(
+        {from, to, *rate, table.number(r, "rate_lo"), table.number(r, "rate_hi"), certified(table.text(r, "status"))});
   }
 }
 

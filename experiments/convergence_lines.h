@@ -33,6 +33,7 @@ struct SamplesRange {
 struct LocalRatePoint {
   double samples_lo, samples_hi, rate;
   std::optional<double> lo, hi;  ///< of the 95 % interval, as far as the table has it
+  bool certified;                ///< its status is `ok` or `deterministic`
 };
 
 struct ConvergenceLine {

@@ -69,7 +69,7 @@ RunOutcome run_experiment(const Spec& spec, const Catalogue& catalogue, const Ru
     for (const auto& line : plan.left_out) message("halfslope: {}\n", line);
   }
   const RunFolder folder(options.out);
-  if (options.overwrite) folder.remove_results();
+  options.overwrite ? folder.remove_results() : folder.refuse_images();
   Journal journal(folder.path(), {run_hash(spec, plan), version(), isa_class(active_isa())}, options.overwrite);
   if (journal.dropped_bytes() > 0 && !options.quiet) {
     message("halfslope: {} bytes at the journal's end were damaged by an interruption; those units are done again\n",

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "analysis/status.h"
 #include "core/error.h"
 #include "experiments/convergence_panels.h"
 #include "experiments/figures.h"
 #include "experiments/line_page.h"
+#include "experiments/tables.h"
 
 namespace halfslope {
 namespace {
@@ -16,14 +18,19 @@ constexpr double kReachOfRates = 0.3;  // beyond all local rates, for their inte
 
 enum class Diagram { kConvergence, kWorkPrecision, kRates };
 
+bool bent(const ConvergenceLine& line) { return has_mark(line.rate_status, "pre-asymptotic"); }
+bool untrusted(const ConvergenceLine& line) {
+  return has_mark(line.rate_status, "few-replicates") || has_mark(line.rate_status, "heavy-tailed");
+}
+
 std::vector<ChartPoint> points_of(const ConvergenceLine& line, Diagram diagram) {
   std::vector<ChartPoint> points;
   if (diagram == Diagram::kRates) {
     const auto outside = [&](const LocalRatePoint& p) {
-      return line.window && (p.samples_lo < line.window->lo || p.samples_hi > line.window->hi);
+      return line.window ? p.samples_lo < line.window->lo || p.samples_hi > line.window->hi : bent(line);
     };
     for (const LocalRatePoint& p : line.local_rates)
-      points.push_back({std::sqrt(p.samples_lo * p.samples_hi), p.rate, p.lo, p.hi, outside(p)});
+      points.push_back({std::sqrt(p.samples_lo * p.samples_hi), p.rate, p.lo, p.hi, !p.certified || outside(p)});
     return points;
   }
   for (const LinePoint& p : line.points) {
@@ -36,7 +43,9 @@ std::vector<ChartPoint> points_of(const ConvergenceLine& line, Diagram diagram) 
 std::string note_of(const ConvergenceLine& line, const std::vector<ChartPoint>& points, Diagram diagram) {
   if (points.empty() && !line.status.empty()) return line.status;
   if (diagram == Diagram::kWorkPrecision) return "";
-  const std::string rate = line.rate ? slope_note(*line.rate, line.rate_interval) : line.rate_status;
+  const std::string rate = line.rate ? slope_note(*line.rate, line.rate_interval, untrusted(line) ? kNotCertified : "",
+                                                  bent(line) ? kNotStraight : "")
+                                     : line.rate_status;
   return diagram == Diagram::kRates && line.theory ? rate + ", " + slope_label(*line.theory) : rate;
 }
 
@@ -72,10 +81,12 @@ LineChart chart_of(const ConvergencePanel& panel, Diagram diagram) {
 }
 
 std::string caption_of(const LinePage& page, bool left_out, Diagram diagram) {
-  bool intervals = false, hollow = false, levels = false;
+  bool intervals = false, hollow = false, levels = false, uncertain = false, curved = false;
   for (const LineChart& chart : page.charts) {
     levels = levels || !chart.style.levels.empty();
     for (const ChartLine& line : chart.lines) {
+      uncertain = uncertain || line.note.find(std::string(kNotCertified) + "[") != std::string::npos;
+      curved = curved || line.note.find("]" + std::string(kNotStraight)) != std::string::npos;
       for (const ChartPoint& p : line.points) intervals = intervals || p.hi, hollow = hollow || p.hollow;
     }
   }
@@ -83,11 +94,16 @@ std::string caption_of(const LinePage& page, bool left_out, Diagram diagram) {
   const auto say = [&](bool applies, const char* sentence) {
     if (applies) text += (text.empty() ? "" : " ") + std::string(sentence);
   };
+  const auto say_marks = [&] {
+    say(uncertain, "~: not certified.");
+    say(curved, "*: pre-asymptotic, no line over all N.");
+    return text;
+  };
   if (diagram == Diagram::kRates) {
     say(levels, "Dotted: theory.");
     say(intervals, "Bars: 95 % intervals over replicates.");
-    say(hollow, "Hollow: outside the N over which the errors follow a line.");
-    return text;
+    say(hollow, "Hollow: interval not certified (status), or outside the N over which the errors follow a line.");
+    return say_marks();
   }
   say(true, "Dotted: slopes \u2212½, \u2212¾, \u22121, \u22123/2.");
   if (diagram == Diagram::kWorkPrecision) {
@@ -98,7 +114,7 @@ std::string caption_of(const LinePage& page, bool left_out, Diagram diagram) {
   say(hollow, "Hollow: interval not certified (status).");
   say(left_out, diagram == Diagram::kWorkPrecision ? "N without a time or a positive RMSE are left out."
                                                    : "N without a positive RMSE are left out.");
-  return text;
+  return say_marks();
 }
 
 Canvas draw_run(const FigureRequest& request, Diagram diagram) {

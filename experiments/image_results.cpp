@@ -102,6 +102,7 @@ Measured measure_cell(const CellFiles& files, const ReferenceImage& reference, c
   result.replicates = data.replicates;
   result.pixels = static_cast<std::int64_t>(reference.values.value.size() / reference.channels.size());
   result.facts.deterministic = data.replicates == 1;
+  result.facts.reference_known = !reference.variance_origin.empty();
   result.facts.rounding_mse = data.rounding_mse;
   result.statistics = summarise(data);
   result.mse = data.mse.mean;
@@ -140,6 +141,12 @@ std::vector<double> name_precisions(std::vector<CellFiles>& cells, const std::st
   return units;
 }
 
+/// Whether both are one file; a path that leads nowhere is none.
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code ignored;
+  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, ignored);
+}
+
 ReferenceFiles of_scene(const ReferenceFiles& files, const std::string& scene) {
   return {with_scene(files.image, scene, "--reference"), with_scene(files.half_a, scene, "--reference-halves"),
           with_scene(files.half_b, scene, "--reference-halves"), files.layer};
@@ -153,6 +160,9 @@ std::vector<Measured> measure_scene(const std::vector<CellFiles>& cells, std::sp
   std::vector<Measured> measured;
   std::optional<ReferenceImage> reference;
   try {
+    if (same_file(files.half_a, files.half_b)) {
+      fail(ExitCode::kBadInput, "{}: is both of --reference-halves; two independent images are needed", files.half_a);
+    }
     reference = read_reference(files);
   } catch (const Error& error) {
     images.problems.push_back(problem_of(files.image, error));
@@ -186,6 +196,18 @@ void keep(std::vector<Measured> measured, ImageResults& images) {
   }
 }
 
+/// Leaves out images that are their scene's reference: measured against itself it would have no error.
+void leave_out_references(std::vector<ImageFile>& files, const ReferenceFiles& references,
+                          std::vector<ImageProblem>& notes) {
+  std::erase_if(files, [&](const ImageFile& file) {
+    const ReferenceFiles own = of_scene(references, file.name.scene);
+    const bool found =
+        same_file(file.path, own.image) || same_file(file.path, own.half_a) || same_file(file.path, own.half_b);
+    if (found) notes.push_back({file.path.string(), "is the reference, so not measured"});
+    return found;
+  });
+}
+
 }  // namespace
 
 ImageResults analyze_images(const ImageRequest& request) {
@@ -196,6 +218,7 @@ ImageResults analyze_images(const ImageRequest& request) {
   ImageMatches matches = pattern.find();
   ImageResults images;
   images.problems = std::move(matches.problems);
+  leave_out_references(matches.files, request.reference, images.notes);
   std::vector<CellFiles> cells = group_by_cell(matches.files, images.problems);
   const std::vector<ImageProblem> missing = missing_seeds(cells, pattern);
   images.problems.insert(images.problems.end(), missing.begin(), missing.end());

@@ -46,17 +46,18 @@ struct ImageResults {
   std::vector<ImageCell> cells;  ///< as results.cells
   std::vector<SceneReference> references;
   std::vector<ImageProblem> problems;  ///< all that was named and gone round
+  std::vector<ImageProblem> notes;     ///< what was gone round and is no problem: the reference among the images
   std::size_t images = 0;              ///< that were read
 };
 
 /// Reads every image that matches and measures it against its scene's reference. The seeds of a cell are its
 /// replicates; an image is held no longer than it takes to add it up.
 ///
-/// What is wrong is in `problems`, and the rest is analysed: an image that cannot be read or differs from the reference
-/// in size or channels is left out; values that are not finite stay, are counted, and make the cell `invalid`, with the
-/// first seed and pixel in first_bad_replicate and first_bad_pixel; a seed that a cell lacks and others of its scene
-/// and precision have leaves the cell's own row to the seeds there are, while `replicate_mse`, which rates and
-/// comparisons pair, has the seeds in common alone.
+/// An image that is the reference itself is left out, and noted. What is wrong is in `problems`, and the rest is
+/// analysed: an image that cannot be read or differs from the reference in size or channels is left out; values that
+/// are not finite stay, are counted, and make the cell `invalid`, with the first seed and pixel in first_bad_replicate
+/// and first_bad_pixel; a seed that a cell lacks and others of its scene and precision have leaves the cell's own row
+/// to the seeds there are, while `replicate_mse`, which rates and comparisons pair, has the seeds in common alone.
 ///
 /// The precision, where the pattern has none, is "f16" for a line whose first readable image stores halves, else "f32";
 /// either sets the rounding that rates stay away from.

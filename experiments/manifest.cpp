@@ -110,6 +110,7 @@ std::string cells_json(const Results& results) {
   Json cells = Json::array();
   for (const CellResult& cell : results.cells) {
     const CellStatistics& s = cell.statistics;
+    const auto if_known = [&](double x) { return cell.facts.reference_known ? Json(x) : Json(); };
     cells.push_back({{"scene", cell.name.scene},
                      {"estimator", cell.name.estimator},
                      {"sampler", cell.name.sampler},
@@ -119,8 +120,8 @@ std::string cells_json(const Results& results) {
                      {"pixels", cell.pixels},
                      {"mean", optional(s.mean)},
                      {"reference", s.reference},
-                     {"reference_se", s.reference_se},
-                     {"reference_mse", s.reference_mse},
+                     {"reference_se", if_known(s.reference_se)},
+                     {"reference_mse", if_known(s.reference_mse)},
                      {"bias", optional(s.bias)},
                      {"bias_se", optional(s.bias_se)},
                      {"variance", optional(s.variance)},

@@ -38,6 +38,7 @@ RateData data_of(const std::vector<CellResult>& cells, Line line) {
     data.mse.push_back(common == 0 ? std::vector<double>{cells[c].mse} : first_of(cells[c].replicate_mse, common));
     data.variance.push_back(cells[c].statistics.variance.value_or(0));
     varied = varied && cells[c].statistics.variance;
+    data.heavy_tailed.push_back(has_mark(cells[c].statistics.status, "heavy-tailed"));
   }
   if (!varied) data.variance.clear();
   data.reference = {first.statistics.reference_mse, first.reference_mse_variance};
@@ -55,6 +56,7 @@ std::optional<RateFit> variance_fit(const std::vector<CellResult>& cells, Line l
     if (!std::ranges::all_of(spread, [](double x) { return std::isfinite(x); })) return {};
     data.samples.push_back(static_cast<double>(cells[c].name.samples));
     data.mse.push_back(spread);
+    data.heavy_tailed.push_back(has_mark(cells[c].statistics.status, "heavy-tailed"));
   }
   data.rounding_mse = cells[line.begin].facts.rounding_mse;
   RateFit fit = fit_rate(data, seed);
@@ -62,15 +64,21 @@ std::optional<RateFit> variance_fit(const std::vector<CellResult>& cells, Line l
   return fit;
 }
 
+/// One number at each N is not a sign of a deterministic sampler where replicates are not kept.
+void name_unkept(std::string& status) {
+  const std::string found = "deterministic";
+  if (const auto mark = status.find(found); mark != std::string::npos)
+    status.replace(mark, found.size(), "many-replicates");
+}
+
 RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
   const CellResult& first = cells[line.begin];
   const std::uint64_t seed = hash_text(line_text(first.name), 1);
   LineRates fits = analyse_rates(data_of(cells, line), seed);
   RateFit& plain = fits.plain;
-  if (const auto mark = plain.status.find("deterministic");
-      common_replicates(cells, line) == 0 && mark != std::string::npos) {
-    // One number at each N not because there was one replicate: they are not kept, so there is no interval.
-    plain.status.replace(mark, std::string("deterministic").size(), "many-replicates");
+  if (common_replicates(cells, line) == 0) {
+    name_unkept(plain.status);
+    for (LocalRate& local : fits.local) name_unkept(local.status);
   }
   if (first.facts.infinite_variance) {
     // The slope would be that of the largest values that happened to be met.
@@ -85,7 +93,7 @@ RateResults fit_line(const std::vector<CellResult>& cells, Line line) {
   };
   add(plain, RateKind::kPlain);
   // Where the line is straight over every N its window says nothing new.
-  const bool narrower = fits.window && (fits.window->floor_mse || fits.window->samples_lo > plain.samples_lo ||
+  const bool narrower = fits.window && (!plain.rate || fits.window->samples_lo > plain.samples_lo ||
                                         fits.window->samples_hi < plain.samples_hi);
   if (narrower) add(*fits.window, RateKind::kWindow);
   if (first.facts.unbiased && has_mark(plain.status, "reference-limited")) {

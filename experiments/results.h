@@ -22,6 +22,7 @@ struct CellFacts {
   bool deterministic = false;      ///< the sampler has one replicate
   bool unbiased = false;           ///< it declares that its estimates are
   bool infinite_variance = false;  ///< of the integrand: no squared error has an expectation
+  bool reference_known = true;     ///< how sure the reference is
   double rounding_mse = 0;         ///< square of the rounding error of values as large as these; 0: not known
   std::optional<double> theory;    ///< the rate that theory gives
 };

@@ -36,7 +36,7 @@ bool is_temporary(const std::filesystem::path& file) {
 bool is_table(const std::string& name) {
   constexpr std::array kTables = {"convergence.csv", "replicates.csv", "rates.csv",       "local_rates.csv",
                                   "regions.csv",     "tails.csv",      "comparisons.csv", "discrepancy.csv",
-                                  "theory.csv",      "manifest.json"};
+                                  "theory.csv",      "metrics.csv",    "manifest.json"};
   return std::find(kTables.begin(), kTables.end(), name) != kTables.end() ||
          std::find(kTimingFiles.begin(), kTimingFiles.end(), name) != kTimingFiles.end();
 }
@@ -61,8 +61,15 @@ RunFolder::RunFolder(const std::filesystem::path& folder) : folder_(folder) {
   fail(ExitCode::kIo, "{}: cannot be locked: {}", path(".lock").string(), std::strerror(errno));
 }
 
+void RunFolder::refuse_images() const {
+  if (std::filesystem::exists(path("metrics.csv")) && !std::filesystem::exists(path("journal"))) {
+    fail(ExitCode::kBadInput, "{}: holds an analysis of images; start afresh with --overwrite, or --out another folder",
+         folder_.string());
+  }
+}
+
 void RunFolder::remove_results() const {
-  if (!std::filesystem::exists(path("journal"))) return;
+  if (!std::filesystem::exists(path("journal")) && !std::filesystem::exists(path("metrics.csv"))) return;
   remove_files(folder_, [&](const std::filesystem::path& file) {
     const std::string name = file.filename().string();
     if (file.extension() == ".exr") return file.parent_path() != folder_ || name.starts_with("reference");

@@ -19,8 +19,10 @@ class RunFolder {
   const std::filesystem::path& path() const { return folder_; }
   std::filesystem::path path(std::string_view name) const { return folder_ / name; }
 
-  /// Removes the tables and pictures of an earlier run, which would pass for the next one's. Nothing else is touched,
-  /// and nothing at all where there is no journal.
+  /// Refuses a folder that holds an analysis of images, whose tables a run's would replace. Error(kBadInput).
+  void refuse_images() const;
+  /// Removes the tables and pictures of an earlier run or analysis, which would pass for the next one's. Nothing else
+  /// is touched, and nothing at all where there is neither a journal nor a metrics.csv.
   void remove_results() const;
 
  private:

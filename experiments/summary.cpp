@@ -8,8 +8,6 @@
 namespace halfslope {
 namespace {
 
-constexpr const char* kNotCertified = "~";  // before an interval
-
 std::string short_number(const std::optional<double>& x) { return x ? fmt::format("{:.3g}", *x) : "-"; }
 std::string between(const std::optional<double>& lo, const std::optional<double>& hi) {
   return lo || hi ? fmt::format("[{}, {}]", short_number(lo), short_number(hi)) : "";
@@ -80,8 +78,7 @@ std::string main_table(const Results& results, const Slice& slice) {
       std::string slope = "-", slope_interval;
       if (rate != results.rates.end() && rate->fit.rate) {
         slope = fmt::format("{:.2f}", *rate->fit.rate);
-        if (rate->fit.interval)
-          slope_interval = fmt::format("[{:.2f}, {:.2f}]", rate->fit.interval->lo, rate->fit.interval->hi);
+        slope_interval = rate_interval_text(rate->fit);
       } else if (rate != results.rates.end() && rate->fit.samples_hi > 0) {
         slope_interval = rate->fit.status;  // why there is none; the row's own status speaks of this N alone
       }
@@ -90,10 +87,8 @@ std::string main_table(const Results& results, const Slice& slice) {
                       s.status});
     }
   }
-  std::string text = align(rows, 2);
-  if (text.find(std::string(kNotCertified) + "[") != std::string::npos)
-    text += fmt::format("  {} not certified: its coverage may be less than 95 %; status says why\n", kNotCertified);
-  return text;
+  const std::string text = align(rows, 2);
+  return text + explained_marks(text);
 }
 
 std::string differences(const Results& results, const CellResult& cell) {

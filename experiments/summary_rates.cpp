@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "analysis/status.h"
 #include "experiments/tables.h"
 #include "experiments/text_table.h"
 
@@ -14,8 +15,8 @@ constexpr std::size_t kFewestScenes = 3;
 
 std::string cell_text(const RateResult& rate) {
   if (!rate.fit.rate) return rate.fit.status;
-  if (!rate.fit.interval) return fmt::format("{:.2f}", *rate.fit.rate);
-  return fmt::format("{:.2f} [{:.2f}, {:.2f}]", *rate.fit.rate, rate.fit.interval->lo, rate.fit.interval->hi);
+  const std::string interval = rate_interval_text(rate.fit);
+  return fmt::format("{:.2f}{}{}", *rate.fit.rate, interval.empty() ? "" : " ", interval);
 }
 
 void note(std::vector<std::string>& names, const std::string& name) {
@@ -23,6 +24,27 @@ void note(std::vector<std::string>& names, const std::string& name) {
 }
 
 }  // namespace
+
+std::string rate_interval_text(const RateFit& fit) {
+  if (!fit.interval) return "";
+  return fmt::format("{}[{:.2f}, {:.2f}]{}", is_certified(fit) ? "" : kNotCertified, fit.interval->lo, fit.interval->hi,
+                     has_mark(fit.status, "pre-asymptotic") ? kNotStraight : "");
+}
+
+std::string explained_marks(const std::string& text) {
+  std::string lines;
+  if (text.find(std::string(kNotCertified) + "[") != std::string::npos) {
+    lines += fmt::format(
+        "  {} not certified: its coverage may be less than 95 %; status says why, of a rate that in rates.csv\n",
+        kNotCertified);
+  }
+  if (text.find("]" + std::string(kNotStraight)) != std::string::npos) {
+    lines += fmt::format(
+        "  {} pre-asymptotic: the errors follow no line over all N; rates.csv has the rate where they do, if they do\n",
+        kNotStraight);
+  }
+  return lines;
+}
 
 std::string rates_side_by_side(const Results& results) {
   std::vector<std::string> scenes, precisions;
@@ -53,7 +75,8 @@ std::string rates_side_by_side(const Results& results) {
     }
     table.push_back(std::move(cells));
   }
-  return align(table, 1);
+  const std::string text = align(table, 1);
+  return text + explained_marks(text);
 }
 
 }  // namespace halfslope

@@ -27,7 +27,8 @@ std::string convergence_csv(const Results& results) {
     const CellStatistics& s = cell.statistics;
     key_cells(csv, cell.name);
     csv.cell(cell.name.samples).cell(cell.replicates).cell(cell.pixels);
-    csv.cell(s.mean).cell(if_finite(s.reference)).cell(if_finite(s.reference_se)).cell(if_finite(s.reference_mse));
+    const auto if_known = [&](double x) { return cell.facts.reference_known ? if_finite(x) : std::nullopt; };
+    csv.cell(s.mean).cell(if_finite(s.reference)).cell(if_known(s.reference_se)).cell(if_known(s.reference_mse));
     csv.cell(s.bias).cell(s.bias_se);
     csv.cell(s.variance).cell(s.rmse).cell(s.rmse_lo).cell(s.rmse_hi).cell(s.mae).cell(s.relmse).cell(s.kurtosis);
     csv.cell(s.median_abs_error).cell(s.nonfinite).cell(s.status).end_row();
@@ -68,13 +69,13 @@ std::string rates_csv(const Results& results) {
 }
 
 std::string local_rates_csv(const Results& results) {
-  CsvWriter csv(
-      {"scene", "estimator", "sampler", "precision", "samples_lo", "samples_hi", "rate", "rate_lo", "rate_hi"});
+  CsvWriter csv({"scene", "estimator", "sampler", "precision", "samples_lo", "samples_hi", "rate", "rate_lo", "rate_hi",
+                 "status"});
   for (const LocalRateResult& rate : results.local_rates) {
     key_cells(csv, results.cells[rate.first_cell].name);
     csv.cell(rate.fit.samples_lo).cell(rate.fit.samples_hi).cell(rate.fit.rate);
     csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->lo) : std::nullopt);
-    csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->hi) : std::nullopt).end_row();
+    csv.cell(rate.fit.interval ? std::optional(rate.fit.interval->hi) : std::nullopt).cell(rate.fit.status).end_row();
   }
   return csv.text();
 }

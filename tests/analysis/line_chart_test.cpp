@@ -104,6 +104,21 @@ TEST(LineChart, TheScaleAboveIsThatBelowInAnotherUnit) {
 TEST(LineChart, SlopesHaveTheirIntervals) {
   EXPECT_EQ(slope_note(-0.504, Interval{-0.617, -0.4}), "−0.50 [−0.62, −0.40]");
   EXPECT_EQ(slope_note(0.25, std::nullopt), "0.25");
+  EXPECT_EQ(slope_note(-0.504, Interval{-0.617, -0.4}, "~", "*"), "−0.50 ~[−0.62, −0.40]*");
+}
+
+TEST(LineChart, WithoutPointsHasNoGuidesThatNobodyCouldDraw) {
+  LineChart full{"", "g", {}, {{"a", "a", "", 0, {{4, 0.5}, {64, 0.1}}}}}, empty{"", "g", {}, {{"b", "b", "", 1, {}}}};
+  full.style.slopes = empty.style.slopes = {-0.5, -1};
+  const std::vector<LineChart> charts = {full, empty};
+  const auto scales = chart_scales(charts, "g");
+  Canvas canvas(400, 300);
+  draw_chart(canvas, {{10, 20}, 300, 200, scales->x, scales->y}, {}, empty);
+  for (const Canvas::Element& element : canvas.elements()) {
+    const auto* path = std::get_if<Canvas::Path>(&element);
+    if (!path) continue;
+    for (const Position& p : path->points) EXPECT_TRUE(std::isfinite(p.x) && std::isfinite(p.y));
+  }
 }
 
 }  // namespace

@@ -97,13 +97,59 @@ TEST(RateWindow, IsNotLookedForInFewReplicatesOrFewN) {
 }
 
 TEST(RateWindow, LocalRatesAreSlopesBetweenNeighbours) {
-  const RateData data{{4, 16, 64}, {{8.0, 8.0}, {2.0, 2.0}, {2.0 / 16, 2.0 / 16 + 1e-9}}};
+  const RateData data{{4, 16, 64}, {{7.5, 8.5}, {1.75, 2.25}, {2.0 / 16, 2.0 / 16 + 1e-9}}};
   const LineRates rates = analyse_rates(data, 1);
   ASSERT_EQ(rates.local.size(), 2u);
   EXPECT_EQ(rates.local[0].samples_lo, 4);
   EXPECT_EQ(rates.local[1].samples_hi, 64);
   EXPECT_NEAR(*rates.local[0].rate, -0.5, 1e-12);
+  EXPECT_EQ(rates.local[0].status, "few-replicates");
   EXPECT_NEAR(*rates.local[1].rate, -1, 1e-7);
+}
+
+// Where replicates all err alike they have met too little: of an edge that only one point in a hundred falls beyond,
+// 32 replicates may each miss, and the error is not what they say.
+TEST(RateWindow, AnNWithoutSpreadIsLeftOut) {
+  RateData data = errors(doubling(9), 64, 1, [](double n) { return 1 / n; });
+  std::ranges::fill(data.mse[4], 1e-6);
+  const LineRates rates = analyse_rates(data, 1);
+  EXPECT_EQ(rates.plain.status, "no-spread");
+  EXPECT_FALSE(rates.plain.rate);
+  ASSERT_TRUE(rates.window && rates.window->interval);
+  EXPECT_EQ(rates.window->status, "asymptotic");
+  EXPECT_LE(rates.window->interval->lo, -0.5);
+  EXPECT_GE(rates.window->interval->hi, -0.5);
+  for (std::size_t j = 0; j < rates.local.size(); ++j) {
+    const bool beside = j == 3 || j == 4;
+    EXPECT_EQ(rates.local[j].status, beside ? "no-spread" : "ok") << j;
+    EXPECT_EQ(rates.local[j].interval.has_value(), !beside) << j;
+  }
+}
+
+TEST(RateWindow, HeavyTailsAreMarkedInEveryFit) {
+  RateData data = errors(doubling(9), 64, 1, [](double n) { return 1 / n; });
+  data.heavy_tailed.assign(9, 0);
+  data.heavy_tailed[8] = 1;
+  const LineRates rates = analyse_rates(data, 1);
+  EXPECT_EQ(rates.plain.status, "heavy-tailed");
+  EXPECT_TRUE(rates.plain.interval);
+  EXPECT_FALSE(is_certified(rates.plain));
+  EXPECT_EQ(rates.window->status, "asymptotic;heavy-tailed");
+  EXPECT_EQ(rates.local[6].status, "ok");
+  EXPECT_EQ(rates.local[7].status, "heavy-tailed");
+}
+
+// The last N of errors that go up and down are on some line; that is no asymptote.
+TEST(RateWindow, IsHalfOfTheNAtLeast) {
+  const auto bent = [](double from) {
+    return [from](double n) { return n < from ? std::pow(from, -3) : std::pow(n, -3); };
+  };
+  const auto window_from = [&](double from) {
+    return analyse_rates(errors(doubling(12), 256, 1, bent(from)), 1).window;
+  };
+  ASSERT_TRUE(window_from(doubling(12)[5]));
+  EXPECT_EQ(window_from(doubling(12)[5])->samples_lo, doubling(12)[5]);
+  EXPECT_FALSE(window_from(doubling(12)[8]));
 }
 
 TEST(RateFloor, TheModelIsFoundExactly) {

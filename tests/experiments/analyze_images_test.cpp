@@ -140,6 +140,34 @@ TEST_F(AnalyzeImages, EachBadFileIsNamedAndTheRestIsAnalysed) {
 }
 
 // Of seeds 1, 2, 3 both N have 1 and 3 alone: the ratio of their errors is 2 at those, whatever seed 2 is.
+TEST_F(AnalyzeImages, TheReferenceAmongTheImagesIsNotMeasuredAgainstItself) {
+  write_folder();
+  write_flat("out/a/64_1.exr", 1);
+  const Ended ended = run_program({"analyze", "images", "--reference", path("out/a/64_1.exr"), "--pattern",
+                                   path("out/{sampler}/{samples}_{seed}.exr"), "--out", path("tables")});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_THAT(ended.err, HasSubstr("out/a/64_1.exr: is the reference, so not measured"));
+  EXPECT_EQ(table("convergence.csv").size(), 4u);
+  const Ended twice = run_program({"analyze", "images", "--reference-halves", path("ref.exr"), path("ref.exr"),
+                                   "--pattern", path("out/{sampler}/{samples}_{seed}.exr"), "--out", path("tables")});
+  EXPECT_EQ(twice.code, 3);
+  EXPECT_THAT(twice.err, HasSubstr("two independent images are needed"));
+}
+
+TEST_F(AnalyzeImages, ARunDoesNotReplaceAnAnalysisUnasked) {
+  write_folder();
+  ASSERT_EQ(analyze({}).code, 0);
+  std::vector<std::string> run = {"run", "--scene",    "bilinear",    "--samples", "4",     "--replicates",
+                                  "2",   "--samplers", "independent", "--quiet",   "--out", path("tables")};
+  const Ended refused = run_program(run);
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("holds an analysis of images"));
+  EXPECT_EQ(table("convergence.csv").size(), 4u);
+  run.push_back("--overwrite");
+  EXPECT_EQ(run_program(run).code, 0);
+  EXPECT_FALSE(fs::exists(path("tables/metrics.csv")));
+}
+
 TEST_F(AnalyzeImages, RatesPairTheSeedsInCommon) {
   write_folder();
   write_flat(image("a", 16, 2), 100);

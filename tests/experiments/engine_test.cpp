@@ -275,9 +275,11 @@ TEST(Engine, RatesAreSlopesOfThePrintedErrors) {
   ASSERT_EQ(cells.size(), 18u);
   for (std::size_t line = 0; line < 3; ++line) {
     std::vector<double> x, y;
+    std::string status = "ok";
     for (std::size_t j = 0; j < 6; ++j) {
       x.push_back(std::log(cells.number(6 * line + j, "samples")));
       y.push_back(std::log(cells.number(6 * line + j, "rmse")));
+      if (cells.text(6 * line + j, "status") != "ok") status = cells.text(6 * line + j, "status");
     }
     double sxy = 0, sxx = 0;
     for (std::size_t j = 0; j < 6; ++j) sxy += (x[j] - mean(x)) * y[j], sxx += (x[j] - mean(x)) * (x[j] - mean(x));
@@ -286,7 +288,7 @@ TEST(Engine, RatesAreSlopesOfThePrintedErrors) {
     EXPECT_GT(rates.number(line, "rate_hi"), sxy / sxx);
     EXPECT_EQ(rates.text(line, "samples_lo"), "2");
     EXPECT_EQ(rates.text(line, "samples_hi"), "512");
-    EXPECT_EQ(rates.text(line, "status"), "ok");
+    EXPECT_EQ(rates.text(line, "status"), status);  // a heavy tail at one N is a mark of the line
   }
   EXPECT_EQ(rates.text(0, "theory"), "-0.5");
 }
