@@ -185,6 +185,8 @@ TEST_F(AnalyzeImages, TheReferencesVarianceIsSubtractedWhereItIsKnownAndElseSaid
                                            path("out/{sampler}/{samples}_{seed}.exr"), "--out", path("tables")})
                                   .out;
   EXPECT_THAT(unknown, HasSubstr("its own variance is not known and taken as 0"));
+  EXPECT_EQ(table("convergence.csv").text(0, "reference_se"), "");
+  EXPECT_EQ(table("convergence.csv").text(0, "reference_mse"), "");
   const std::vector<float> one(6, 1.f), variance(6, 0.0078125f);
   write_exr(path("ref.exr"), {3,
                               2,
