@@ -14,6 +14,10 @@ struct Interval {
   double lo, hi;
 };
 
+/// An end further than this factor from the number whose interval it is, either way, says nothing of it: too few
+/// replicates, or a bootstrap that ran out of them. It is left empty.
+inline constexpr double kFarthestEnd = 1e6;
+
 /// Resamples of every bootstrap: the 25th and the 975th of 999 sorted values are the 2.5 % and 97.5 % quantiles
 /// exactly, rank/(B + 1), without interpolation.
 inline constexpr int kBootstrapResamples = 999;

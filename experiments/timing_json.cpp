@@ -16,13 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// RFC 3339, as Google Benchmark writes it: "2026-02-03T04:05:06+01:00".
 std::string local_time() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm local = {};
   localtime_r(&now, &local);
   std::array<char, 64> text{};
   std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S%z", &local);
-  return text.data();
+  std::string date = text.data();
+  return date.insert(date.size() - 2, 1, ':');  // strftime writes +0100
 }
 
 std::string host_name() {

@@ -36,8 +36,9 @@ std::vector<Group> groups_of(const std::vector<TimingResult>& rows) {
     group->names.push_back(row->name);
     group->names.back().samples = 0;
     for (; row != end; ++row) {
-      if (row->rmse)
-        points.push_back({static_cast<double>(row->name.samples), row->seconds(), *row->rmse, row->certified});
+      if (!row->rmse && !row->exact) continue;
+      points.push_back({static_cast<double>(row->name.samples), row->seconds(), row->rmse.value_or(PositiveEstimate()),
+                        row->certified, row->covered()});
     }
     group->curves.emplace_back(std::move(points));
   }
@@ -46,23 +47,26 @@ std::vector<Group> groups_of(const std::vector<TimingResult>& rows) {
 
 using Ask = WorkAnswer (WorkCurve::*)(double) const;
 
-std::optional<EqualWork> ask(const Group& group, Ask question, double at) {
+EqualWork ask(const Group& group, Ask question, double at) {
   EqualWork work = {at, {}};
   for (std::size_t k = 0; k < group.names.size(); ++k)
     work.lines.push_back({group.names[k], (group.curves[k].*question)(at)});
-  const bool answered =
-      std::ranges::any_of(work.lines, [](const LineAnswer& l) { return l.answer.reach == Reach::kInside; });
-  return answered ? std::optional(std::move(work)) : std::nullopt;
+  return work;
 }
 
-/// The time that the fastest of the lines with the group's largest N takes for it.
+bool answered(const EqualWork& work) {
+  return std::ranges::any_of(work.lines, [](const LineAnswer& l) { return l.answer.reach == Reach::kInside; });
+}
+
+/// The time that the fastest of the lines with the group's largest N takes for it, where an error is left.
 std::optional<double> common_time(const Group& group) {
   double samples = 0, seconds = 0;
   for (const WorkCurve& curve : group.curves) {
-    if (curve.points().empty()) continue;
-    const WorkPoint& last = curve.points().back();
-    if (last.samples > samples || (last.samples == samples && last.seconds.value < seconds))
-      samples = last.samples, seconds = last.seconds.value;
+    for (const WorkPoint& point : curve.points()) {
+      if (point.rmse.value == 0) continue;
+      if (point.samples > samples || (point.samples == samples && point.seconds.value < seconds))
+        samples = point.samples, seconds = point.seconds.value;
+    }
   }
   return samples > 0 ? std::optional(seconds) : std::nullopt;
 }
@@ -86,7 +90,8 @@ std::vector<EqualWork> ask_all(const std::vector<TimingResult>& rows, Ask questi
   for (const Group& group : groups_of(rows)) {
     std::optional<double> at = first(group);
     for (int k = 0; at && k <= kFurther; ++k, *at *= step) {
-      if (auto work = ask(group, question, *at)) answers.push_back(std::move(*work));
+      EqualWork work = ask(group, question, *at);
+      if (k == 0 || answered(work)) answers.push_back(std::move(work));
     }
   }
   return answers;
@@ -97,6 +102,16 @@ std::vector<EqualWork> ask_all(const std::vector<TimingResult>& rows, Ask questi
 PositiveEstimate TimingResult::seconds() const {
   const double factor = static_cast<double>(name.samples) * 1e-9;
   return {all.median * factor, all.interval.lo * factor, all.interval.hi * factor};
+}
+
+bool TimingResult::covered() const { return all.coverage >= 0.95; }
+
+std::string LineAnswer::status() const {
+  if (answer.reach != Reach::kInside) return std::string(to_string(answer.reach));
+  Status status;
+  status.mark_if(!answer.certified, "uncertified");
+  status.mark_if(!answer.covered, "few-repetitions");
+  return status.text();
 }
 
 std::vector<TimingResult> timing_results(const Results& results, std::vector<CellTimes> times) {
@@ -112,11 +127,12 @@ std::vector<TimingResult> timing_results(const Results& results, std::vector<Cel
     row.all = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns; });
     row.points = median_of(row.times.runs, [](const TimedRun& run) { return run.points_ns; });
     row.evaluation = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns - run.points_ns; });
-    row.certified = s.status == "ok" || s.status == "deterministic";
+    row.certified = !has_mark(s.status, "few-replicates") && !has_mark(s.status, "heavy-tailed");
     Status status;
     status.mark_if(s.status != "ok", s.status);
-    status.mark_if(row.all.coverage < 0.95, "few-repetitions");
+    status.mark_if(!row.covered(), "few-repetitions");
     row.status = status.text();
+    row.exact = s.rmse == 0.0;
     if (!s.rmse || !(*s.rmse > 0)) continue;
     row.rmse = PositiveEstimate{*s.rmse, s.rmse_lo, s.rmse_hi};
     row.efficiency = efficiency(*row.rmse, row.seconds());

@@ -2,16 +2,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
+#include "analysis/status.h"
 #include "experiments/text_table.h"
 #include "experiments/timing_tables.h"
 
 namespace halfslope {
 namespace {
 
-std::string between(const PositiveEstimate& e) {
+/// "[0.9, 1.2]", behind a mark where it may cover less than the 95 % that its column promises.
+std::string between(const PositiveEstimate& e, bool certified) {
   const auto end = [](const std::optional<double>& x) { return x ? fmt::format("{:.3g}", *x) : "-"; };
-  return e.lo || e.hi ? fmt::format("[{}, {}]", end(e.lo), end(e.hi)) : "";
+  return e.lo || e.hi ? fmt::format("{}[{}, {}]", certified ? "" : "~", end(e.lo), end(e.hi)) : "";
 }
 
 /// "3.4 us": of the three digits that times are good for.
@@ -48,10 +51,25 @@ bool any_shared(const std::vector<std::optional<Places>>& all) {
 }
 
 constexpr const char* kShared =
-    "  A place such as 2-5 is a range: the 95 % intervals overlap, so the order among these cannot be told apart.\n";
+    "  A place such as 2-5 is a range: the intervals overlap, so the order among these cannot be told apart.\n";
+
+/// What a reader of the table must know: why intervals are marked, and what places are.
+std::string notes(const std::string& table, const std::vector<std::optional<Places>>& place) {
+  std::string text;
+  if (table.find("~[") != std::string::npos)
+    text += "  ~ not certified: its coverage may be less than 95 %; status says why\n";
+  if (table.find("few-repetitions") != std::string::npos) {
+    text +=
+        "  few-repetitions: an interval of so few timings is their range, which covers less than 95 %; 6 are enough\n";
+  }
+  return text + (any_shared(place) ? kShared : "");
+}
 
 std::string efficiency_table(std::vector<const TimingResult*> slice) {
-  const auto value = [](const TimingResult* row) { return row->efficiency ? row->efficiency->value : 0; };
+  // No error at all is as efficient as can be.
+  const auto value = [](const TimingResult* row) {
+    return row->exact ? HUGE_VAL : row->efficiency ? row->efficiency->value : 0;
+  };
   std::ranges::stable_sort(slice, std::greater<>(), value);
   std::vector<PositiveEstimate> estimates;
   for (const TimingResult* row : slice) estimates.push_back(row->efficiency.value_or(PositiveEstimate()));
@@ -62,16 +80,28 @@ std::string efficiency_table(std::vector<const TimingResult*> slice) {
     const TimingResult& row = *slice[k];
     const bool known = row.efficiency.has_value();
     table.push_back({row.name.sampler, row.name.estimator, known ? fmt::format("{:.3g}", row.efficiency->value) : "-",
-                     known ? between(*row.efficiency) : "", place_text(place[k]), fmt::format("{:.3g}", row.all.median),
-                     between({row.all.median, row.all.interval.lo, row.all.interval.hi}),
+                     known ? between(*row.efficiency, row.certified && row.covered()) : "", place_text(place[k]),
+                     fmt::format("{:.3g}", row.all.median),
+                     between({row.all.median, row.all.interval.lo, row.all.interval.hi}, row.covered()),
                      fmt::format("{:.3g}", row.points.median), row.status});
   }
-  return align(table, 2) + (any_shared(place) ? kShared : "");
+  const std::string text = align(table, 2);
+  return text + notes(text, place);
+}
+
+/// The marks of both answers, each once; why there is none stands in its own place.
+std::string status_of(const LineAnswer& error, const LineAnswer& time) {
+  Status status;
+  for (const char* mark : {"uncertified", "few-repetitions"})
+    status.mark_if(has_mark(error.status(), mark) || has_mark(time.status(), mark), mark);
+  const bool some = error.answer.reach == Reach::kInside || time.answer.reach == Reach::kInside;
+  return some ? status.text() : error.status();
 }
 
 /// Two answers of each line: the error after a time, and the time to an error.
 std::string equal_table(const EqualWork& errors, const EqualWork& times) {
   const auto value = [](const LineAnswer& line) {
+    if (line.answer.reach == Reach::kExact) return 0.0;
     return line.answer.reach == Reach::kInside ? line.answer.value.value : HUGE_VAL;
   };
   std::vector<std::size_t> order(errors.lines.size());
@@ -81,19 +111,23 @@ std::string equal_table(const EqualWork& errors, const EqualWork& times) {
   for (const std::size_t k : order) estimates.push_back(errors.lines[k].answer.value);
   const auto place = places(estimates, false);
   std::vector<std::vector<std::string>> table = {
-      {"sampler", "estimator", "N", "rmse", "95 %", "place", "time in us", "95 %"}};
+      {"sampler", "estimator", "N", "rmse", "95 %", "place", "time in us", "95 %", "status"}};
   for (std::size_t k = 0; k < order.size(); ++k) {
     const auto& [line, error] = errors.lines[order[k]];
     const WorkAnswer& time = times.lines[order[k]].answer;
     const bool has_error = error.reach == Reach::kInside, has_time = time.reach == Reach::kInside;
+    const auto interval = [](const WorkAnswer& of, const PositiveEstimate& e) {
+      return of.reach == Reach::kInside ? between(e, of.certified && of.covered) : "";
+    };
     const PositiveEstimate us = microseconds(time.value);
     table.push_back({line.sampler, line.estimator, has_error ? fmt::format("{:.0f}", error.samples) : "-",
                      has_error ? fmt::format("{:.3g}", error.value.value) : std::string(to_string(error.reach)),
-                     has_error ? between(error.value) : "", place_text(place[k]),
+                     interval(error, error.value), place_text(place[k]),
                      has_time ? fmt::format("{:.3g}", us.value) : std::string(to_string(time.reach)),
-                     has_time ? between(us) : ""});
+                     interval(time, us), status_of(errors.lines[order[k]], times.lines[order[k]])});
   }
-  return align(table, 2) + (any_shared(place) ? kShared : "");
+  const std::string text = align(table, 2);
+  return text + notes(text, place);
 }
 
 const EqualWork* find_first(const std::vector<EqualWork>& table, const CellName& name) {

@@ -21,20 +21,16 @@ void estimate_cells(CsvWriter& csv, const std::optional<PositiveEstimate>& estim
   csv.cell(estimate->value).cell(estimate->lo).cell(estimate->hi);
 }
 
-std::string status_of(const WorkAnswer& answer) {
-  const bool uncertified = answer.reach == Reach::kInside && !answer.certified;
-  return uncertified ? "uncertified" : std::string(to_string(answer.reach));
-}
-
 std::string equal_csv(const std::vector<EqualWork>& table, std::vector<std::string> columns) {
   CsvWriter csv{std::span<const std::string>(columns)};
   for (const EqualWork& work : table) {
-    for (const auto& [line, answer] : work.lines) {
+    for (const LineAnswer& line : work.lines) {
+      const WorkAnswer& answer = line.answer;
       const bool inside = answer.reach == Reach::kInside;
-      line_cells(csv, line);
+      line_cells(csv, line.line);
       csv.cell(work.at).cell(inside ? std::optional(answer.samples) : std::nullopt);
       estimate_cells(csv, inside ? std::optional(answer.value) : std::nullopt);
-      csv.cell(status_of(answer)).end_row();
+      csv.cell(line.status()).end_row();
     }
   }
   return csv.text();

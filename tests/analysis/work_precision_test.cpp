@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace halfslope {
 namespace {
@@ -49,8 +50,85 @@ TEST(WorkCurve, SaysNothingBeyondWhatWasMeasured) {
   EXPECT_EQ(curve.error_after(64.1e-6).reach, Reach::kBeyond);
   EXPECT_EQ(curve.time_until(0.51).reach, Reach::kBelow);
   EXPECT_EQ(curve.time_until(0.124).reach, Reach::kBeyond);
-  EXPECT_EQ(WorkCurve({}).error_after(1).reach, Reach::kBeyond);
-  EXPECT_EQ(WorkCurve({}).time_until(1).reach, Reach::kBeyond);
+  EXPECT_EQ(WorkCurve({}).error_after(1).reach, Reach::kUnknown);
+  EXPECT_EQ(WorkCurve({}).time_until(1).reach, Reach::kUnknown);
+}
+
+/// A line of falling errors, not on any law.
+std::vector<WorkPoint> falling_line(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0.1, 1);
+  std::vector<WorkPoint> points;
+  double seconds = 1e-6 * uniform(random), rmse = uniform(random);
+  for (double n = 4; n <= 1024; n *= 2) {
+    points.push_back({n, within(seconds, uniform(random)), within(rmse, uniform(random))});
+    seconds *= 1 + uniform(random), rmse *= uniform(random) * 0.999;
+  }
+  return points;
+}
+
+// A line reaches its own errors in its own times, to the last bit: exp(log x) is not x.
+TEST(WorkCurve, MeetsEachOfItsPointsExactly) {
+  std::mt19937_64 random(1);
+  for (int line = 0; line < 100; ++line) {
+    const std::vector<WorkPoint> points = falling_line(random);
+    const WorkCurve curve(points);
+    for (const WorkPoint& point : points) {
+      const WorkAnswer error = curve.error_after(point.seconds.value), time = curve.time_until(point.rmse.value);
+      ASSERT_EQ(error.reach, Reach::kInside);
+      ASSERT_EQ(time.reach, Reach::kInside);
+      EXPECT_EQ(error.value.value, point.rmse.value);
+      EXPECT_EQ(time.value.value, point.seconds.value);
+      EXPECT_EQ(error.samples, point.samples);
+      EXPECT_EQ(time.samples, point.samples);
+    }
+  }
+}
+
+// However near to a point, what is read off does not leave the neighbours, so it is reached where it was read.
+TEST(WorkCurve, ReadsNothingOffBeyondTheNeighbours) {
+  std::mt19937_64 random(2);
+  for (int line = 0; line < 100; ++line) {
+    const std::vector<WorkPoint> points = falling_line(random);
+    const WorkCurve curve(points);
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const double a = points[k - 1].seconds.value, b = points[k].seconds.value;
+      for (const double seconds : {std::nextafter(a, b), std::sqrt(a * b), std::nextafter(b, a)}) {
+        const WorkAnswer error = curve.error_after(seconds);
+        EXPECT_LE(error.value.value, points[k - 1].rmse.value);
+        EXPECT_GE(error.value.value, points[k].rmse.value);
+        EXPECT_GE(error.samples, points[k - 1].samples);
+        EXPECT_LE(error.samples, points[k].samples);
+        EXPECT_EQ(curve.time_until(error.value.value).reach, Reach::kInside);
+      }
+    }
+  }
+}
+
+TEST(WorkCurve, NoErrorIsReachedAsSoonAsItIsMeasured) {
+  const WorkCurve exact({{4, {4}, {0}}, {16, {16}, {0}}});
+  EXPECT_EQ(exact.error_after(3).reach, Reach::kBelow);  // its smallest N takes longer
+  for (const double seconds : {4, 9, 16, 99}) EXPECT_EQ(exact.error_after(seconds).reach, Reach::kExact);
+  for (const double rmse : {1e-300, 1.0}) EXPECT_EQ(exact.time_until(rmse).reach, Reach::kExact);
+  const WorkCurve later({{4, within(4, 0.2), within(2, 0.1)}, {16, within(16, 0.2), within(1, 0.1)}, {64, {64}, {0}}});
+  EXPECT_EQ(later.error_after(8).reach, Reach::kInside);
+  EXPECT_EQ(later.error_after(16).value.value, 1);
+  EXPECT_EQ(later.error_after(17).reach, Reach::kExact);
+  EXPECT_EQ(later.time_until(1).value.value, 16);
+  EXPECT_EQ(later.time_until(0.9).reach, Reach::kExact);
+  const WorkCurve at_once({{4, within(4, 0.2), within(2, 0.1)}, {16, {16}, {0}}});
+  EXPECT_NEAR(*at_once.error_after(4).value.log_above(), 0.1, 1e-12);  // no slope is known
+  EXPECT_NEAR(*at_once.time_until(2).value.log_above(), 0.2, 1e-12);
+}
+
+// The errors of a flat line hardly say when they are reached: an end a million times off says nothing.
+TEST(WorkCurve, EndsThatSayNothingAreEmpty) {
+  const WorkCurve flat({{4, within(4, 0.1), within(1, 0.5)}, {16, within(16, 0.1), within(0.99, 0.5)}});
+  const WorkAnswer answer = flat.time_until(0.995);
+  ASSERT_EQ(answer.reach, Reach::kInside);
+  EXPECT_FALSE(answer.value.lo || answer.value.hi);  // 0.5 · log 4/log(1/0.99) = 69, and log 10⁶ = 13.8
+  const WorkCurve level({{4, within(4, 0.1), within(1, 0.5)}, {16, within(16, 0.1), within(1, 0.5)}});
+  EXPECT_EQ(level.time_until(1).value.value, 4);
+  EXPECT_FALSE(level.time_until(1).value.lo || level.time_until(1).value.hi);
 }
 
 TEST(WorkCurve, ALonePointAnswersForItself) {
@@ -76,6 +154,9 @@ TEST(WorkCurve, MissingEndsStayMissingAndMarksAreKept) {
   EXPECT_FALSE(answer.value.lo || answer.value.hi);
   EXPECT_FALSE(answer.certified);
   EXPECT_TRUE(curve.error_after(1).certified);  // nothing of its neighbour is in it
+  const WorkCurve few({{1, {1}, {8}}, {4, {4}, {2}, true, false}});
+  EXPECT_TRUE(few.error_after(1).covered);
+  EXPECT_FALSE(few.error_after(2).covered || few.time_until(2).covered);
   EXPECT_NEAR(*curve.error_after(4).value.log_above(), std::hypot(0.1, 0.1), 1e-12);  // slope −1
 }
 

@@ -86,7 +86,9 @@ TEST(Timing, GoogleBenchmarksToolsFindTheirFields) {
   const RunScope scope;
   scope.run(kToy);
   const auto json = nlohmann::json::parse(read_file(scope.path("out/timing.json")));
-  EXPECT_TRUE(json.at("context").contains("date"));
+  // RFC 3339, as Google Benchmark writes it.
+  EXPECT_THAT(json.at("context").at("date").get<std::string>(),
+              ::testing::MatchesRegex("....-..-..T..:..:..[+-]..:.."));
   const auto& entries = json.at("benchmarks");
   ASSERT_EQ(entries.size(), 8u * 3);
   std::map<std::string, std::set<int>> repetitions;
@@ -246,6 +248,97 @@ TEST(TimingResults, MarksOfTheCellsAreKept) {
   EXPECT_EQ(rows[0].status, "heavy-tailed;few-repetitions");
   EXPECT_FALSE(rows[0].certified);
   EXPECT_FALSE(rows[1].efficiency);  // an error of 0 has none
+}
+
+// At an end of a line the numbers are its own: what the fastest has reached after t takes it t and its largest N, and
+// rounding loses no row.
+TEST(TimingResults, TheFirstErrorIsWhatItsLineHasReached) {
+  for (int seed = 0; seed < 50; ++seed) {
+    Results results;
+    std::vector<CellTimes> times;
+    add_line(results, times, "plain", -0.5 - 0.001 * seed, 1.93 + 0.0137 * seed, {16, 32, 64});
+    const auto rows = timing_results(results, times);
+    const std::vector<EqualWork> errors = equal_times(rows), reached = equal_errors(rows);
+    ASSERT_FALSE(errors.empty() || reached.empty());
+    EXPECT_EQ(reached[0].at, results.cells[2].statistics.rmse);
+    for (const LineAnswer& line : {errors[0].lines[0], reached[0].lines[0]}) {
+      EXPECT_EQ(line.status(), "ok");
+      EXPECT_EQ(line.answer.samples, 64);
+    }
+    EXPECT_EQ(reached[0].lines[0].answer.value.value, rows[2].seconds().value);
+    EXPECT_EQ(errors[0].lines[0].answer.value.value, results.cells[2].statistics.rmse);
+  }
+}
+
+/// The error that the summary says times are to.
+std::string labelled_error(const std::vector<TimingResult>& rows) {
+  const std::string text = timing_summary(rows), before = "time to an rmse of ";
+  const auto from = text.find(before) + before.size();
+  return text.substr(from, text.find(',', from) - from);
+}
+
+// Of the lines that t cuts the median one may err more at its end than after t, and then it never gets there for good.
+TEST(TimingSummary, NamesTheErrorAfterThatTimeEvenWhereNoneAnswers) {
+  Results results;
+  std::vector<CellTimes> times;
+  add_line(results, times, "slow", -0.5, 40, {4, 16, 64});
+  add_line(results, times, "plain", -0.5, 10, {4, 16, 64});
+  for (std::size_t k = 0; k < 6; ++k) results.cells[k].statistics.rmse = k % 3 == 2 ? 0.5 : k < 3 ? 0.1 : 0.3;
+  const auto rows = timing_results(results, times);  // after 640 ns they err 0.1 (slow, N = 16) and 0.5
+  ASSERT_EQ(equal_errors(rows).front().at, 0.1);
+  for (const LineAnswer& line : equal_errors(rows).front().lines) EXPECT_EQ(line.answer.reach, Reach::kBeyond);
+  EXPECT_EQ(labelled_error(rows), "0.1");
+  EXPECT_EQ(labelled_error(MadeUp().rows), "0.0625");
+}
+
+// The perfect estimator is there at once; of one without any error that is known nothing is said.
+TEST(TimingResults, NoErrorIsExactAndNotOutOfRange) {
+  Results results;
+  std::vector<CellTimes> times;
+  add_line(results, times, "plain", -0.5, 10, {4, 16, 64});
+  add_line(results, times, "perfect", -0.5, 20, {4, 16, 64});
+  add_line(results, times, "unknown", -0.5, 5, {4, 16, 64});
+  for (std::size_t k = 3; k < 9; ++k) {
+    CellStatistics& s = results.cells[k].statistics;
+    s.rmse = k < 6 ? std::optional(0.0) : std::nullopt;
+    s.rmse_lo.reset(), s.rmse_hi.reset();
+    s.status = k < 6 ? "exact" : "infinite-variance";
+  }
+  const auto rows = timing_results(results, times);
+  for (const auto& table : {equal_times(rows), equal_errors(rows)}) {
+    ASSERT_FALSE(table.empty());
+    EXPECT_EQ(table[0].lines[0].status(), "ok");
+    EXPECT_EQ(table[0].lines[1].status(), "exact");
+    EXPECT_EQ(table[0].lines[2].status(), "no-rmse");
+  }
+  EXPECT_EQ(equal_times(rows)[0].at, rows[2].seconds().value);  // of those that err
+  EXPECT_THAT(equal_error_csv(rows), AllOf(HasSubstr(",,,,,exact\n"), Not(HasSubstr("above-range"))));
+  const std::string text = timing_summary(rows);
+  EXPECT_THAT(text, Not(HasSubstr("above-range")));
+  EXPECT_LT(text.find("perfect"), text.find("plain"));  // ranked first
+}
+
+// Of three timings the range covers three of four, whatever is made of it.
+TEST(TimingResults, IntervalsOfFewRepetitionsAreMarkedWhereverTheyGo) {
+  MadeUp made;
+  for (const auto& [repetitions, few] : {std::pair(5, true), {6, false}}) {
+    const std::vector<TimedRun> runs(static_cast<std::size_t>(repetitions), {1, 2, 2});
+    std::vector<CellTimes> times(made.results.cells.size(), {runs, 1, 16});
+    made.results.cells[0].statistics.status = "heavy-tailed";
+    const auto rows = timing_results(made.results, times);
+    for (const auto& table : {equal_times(rows), equal_errors(rows)}) {
+      for (const EqualWork& work : table) {
+        for (const LineAnswer& line : work.lines) {
+          EXPECT_EQ(line.status().find("few-repetitions") != std::string::npos,
+                    few && line.answer.reach == Reach::kInside);
+        }
+      }
+    }
+    EXPECT_EQ(equal_time_csv(rows).find("uncertified;few-repetitions") != std::string::npos, few);
+    const std::string text = timing_summary(rows);
+    EXPECT_EQ(text.find("~[") != std::string::npos, few);
+    EXPECT_EQ(text.find("6 are enough") != std::string::npos, few);
+  }
 }
 
 TEST(TimingSummary, RanksNothingInsideTheNoise) {
