@@ -32,6 +32,18 @@ Column column_of(const ComparedErrors& cell, std::size_t rows) {
   return column;
 }
 
+/// Whether two errors differ by no more than rounding. Estimates that are off by ε each have squares, and means of
+/// squares over an image, that differ by 2 ε times the root of the larger one and ε² at most.
+bool equal_but_for_rounding(double a, double b, double epsilon) {
+  return std::abs(a - b) <= epsilon * (2 * std::sqrt(std::max(a, b)) + epsilon);
+}
+
+bool equal_but_for_rounding(const ComparedErrors& a, const ComparedErrors& b, std::size_t rows) {
+  const double epsilon = kRoundings * std::sqrt(std::min(a.rounding_mse, b.rounding_mse));
+  return std::ranges::equal(a.squared_errors.first(rows), b.squared_errors.first(rows),
+                            [&](double x, double y) { return equal_but_for_rounding(x, y, epsilon); });
+}
+
 bool usable(std::span<const double> errors) {
   return std::ranges::all_of(errors, [](double error) { return std::isfinite(error) && error >= 0; });
 }
@@ -51,7 +63,7 @@ bool begin_comparison(Comparison& comparison, std::span<const ComparedErrors> ce
   Status status;
   status.mark_if(!usable(errors_a) || !usable(errors_b), "invalid");
   status.mark_if(status.ok() && (x.measured == 0 || y.measured == 0), "exact");
-  status.mark_if(status.ok() && std::ranges::equal(errors_a, errors_b), "equal");
+  status.mark_if(status.ok() && equal_but_for_rounding(cells[a], cells[b], rows), "equal");
   const bool measured = status.ok();
   status.mark_if(measured && (cells[a].reference_mse > kReferenceShare * x.measured ||
                               cells[b].reference_mse > kReferenceShare * y.measured),
@@ -127,6 +139,7 @@ void single_results(Tested& tested) {
   if (!std::isfinite(*at)) return;
   const auto n = static_cast<double>(comparison.replicates);
   const double half_width = comparison.spread->deviation / std::sqrt(n) * *at;
+  if (half_width > std::log(kFarthestEnd)) return;
   comparison.interval = Interval{*comparison.log_ratio - half_width, *comparison.log_ratio + half_width};
 }
 

@@ -17,7 +17,12 @@ namespace halfslope {
 struct ComparedErrors {
   std::span<const double> squared_errors;  ///< e²_r ≥ 0, one a replicate; empty: they were not kept
   double reference_mse = 0;                ///< V̄, which they contain and which is subtracted from their mean
+  double rounding_mse = 0;                 ///< square of the rounding error of the estimates; 0: not known
 };
+
+/// Estimates that are so many rounding errors apart or less, four units in the last place, are the same number reached
+/// in two ways.
+inline constexpr double kRoundings = 8;
 
 /// What a comparison says, at 5 % over the whole family.
 enum class Verdict {
@@ -40,7 +45,7 @@ struct Comparison {
   ColumnPair pair;
   std::int64_t replicates = 0;       ///< R, of which both sides have squared errors
   std::optional<double> log_ratio;   ///< log((M_a − V̄_a)/(M_b − V̄_b)): negative where a is better
-  std::optional<Interval> interval;  ///< of it, 95 %, of this comparison alone
+  std::optional<Interval> interval;  ///< of it, 95 %, of this comparison alone; none if wider than ± log kFarthestEnd
   std::optional<double> p;           ///< two-sided, of this comparison alone
   std::optional<double> p_adjusted;  ///< for the whole family
   Verdict verdict = Verdict::kNone;  ///< of p_adjusted
@@ -73,9 +78,10 @@ struct Comparison {
 /// Cells of unequal replicates are compared over the first R that both have; such pairs are resampled apart.
 ///
 /// Marks that refuse a comparison: `many-replicates` (squared errors were not kept), `deterministic` (R = 1), `invalid`
-/// (a squared error is not finite, or negative), `exact` (an M is 0), `equal` (the same squared errors on both sides),
-/// `no-spread` (the influences are equal: the ratio stands, with nothing to say how sure it is), `reference-limited`
-/// (an M − V̄ is not positive). That do not: `few-replicates` (R < 16), `reference-limited` (V̄ above 10 % of an M).
+/// (a squared error is not finite, or negative), `exact` (an M is 0), `equal` (the same squared errors on
+/// both sides, but for kRoundings rounding errors of the estimates), `no-spread` (the influences are equal: the ratio
+/// stands, with nothing to say how sure it is), `reference-limited` (an M − V̄ is not positive). That do not:
+/// `few-replicates` (R < 16), `reference-limited` (V̄ above 10 % of an M).
 ///
 /// Predictions (analysis/power.h) hold against the family's critical value of the first step, the 0.95 (B + 1)-th of
 /// the largest |T*|; for other numbers of replicates, against that of a normal number as improbable as it.

@@ -35,9 +35,14 @@ CorrectedMean corrected_mean(double mean, const std::optional<Interval>& log_int
   };
   CorrectedMean result{corrected(mean), {}, {}};
   if (!result.value || !log_interval) return result;
+  const auto end_at = [&](double log_end) {
+    const std::optional<double> end = corrected(std::exp(log_end));
+    const bool known = end && std::fabs(std::log(*end / *result.value)) <= 2 * std::log(kFarthestEnd);
+    return known ? end : std::nullopt;
+  };
   const Interval wide = widened_for_reference(*log_interval, mean, part.noise);
-  result.lo = corrected(std::exp(wide.lo));
-  result.hi = corrected(std::exp(wide.hi));
+  result.lo = end_at(wide.lo);
+  result.hi = end_at(wide.hi);
   return result;
 }
 

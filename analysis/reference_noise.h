@@ -42,7 +42,8 @@ struct ReferencePart {
 };
 
 /// A mean of squared errors less the reference's part, and the ends of its 95 % interval. Empty where a number is not
-/// finite or not positive; never 0 instead.
+/// finite or not positive, and an end whose root is further than a factor kFarthestEnd from that of the mean; never 0
+/// instead.
 struct CorrectedMean {
   std::optional<double> value, lo, hi;
 };

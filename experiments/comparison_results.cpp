@@ -53,7 +53,7 @@ void compare_family(const std::vector<CellResult>& cells, ComparisonFamily& fami
 
   std::vector<ComparedErrors> errors;
   for (const std::size_t c : family.cells) {
-    errors.push_back({cells[c].replicate_mse, cells[c].statistics.reference_mse});
+    errors.push_back({cells[c].replicate_mse, cells[c].statistics.reference_mse, cells[c].facts.rounding_mse});
     if (cells[c].facts.infinite_variance) errors.back().squared_errors = {};
   }
   const CellName& name = cells[family.cells.front()].name;

@@ -118,7 +118,9 @@ std::string comparisons_csv(const Results& results) {
                  "replicates_10_percent_lo",
                  "replicates_10_percent_hi",
                  "status"});
-  const auto exp_of = [](const std::optional<double>& x) { return x ? if_finite(std::exp(*x)) : std::nullopt; };
+  const auto exp_of = [](const std::optional<double>& x) {
+    return x && std::isnormal(std::exp(*x)) ? std::optional(std::exp(*x)) : std::nullopt;
+  };
   const auto predicted = [&](const std::optional<Prediction>& prediction) {
     for (double Prediction::*end : {&Prediction::value, &Prediction::lo, &Prediction::hi})
       csv.cell(prediction ? if_finite((*prediction).*end) : std::nullopt);

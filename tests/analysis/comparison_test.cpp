@@ -167,6 +167,54 @@ TEST(Compare, NothingIsRankedWhereNothingIsKnown) {
   EXPECT_NEAR(*proportional.log_ratio, -std::log(3), 1e-13);
 }
 
+// Estimates of about 1 whose last bits differ, as those of one estimator that is worked out in two ways.
+TEST(Compare, DifferencesOfRoundingAloneAreNone) {
+  for (const double unit : {0x1p-24, 0x1p-53}) {
+    std::mt19937_64 random(12);
+    std::normal_distribution<double> normal(0, 0.1);
+    std::uniform_int_distribution<int> ulps(-4, 4);
+    std::vector<double> a, near, far;
+    for (int r = 0; r < 64; ++r) {
+      const double error = normal(random);
+      a.push_back(error * error);
+      near.push_back(std::pow(error + ulps(random) * unit, 2));
+      far.push_back(std::pow(error + 100 * ulps(random) * unit, 2));
+    }
+    const auto compared = [&](const std::vector<double>& b, double rounding) {
+      const ComparedErrors cells[] = {{a, 0, rounding * rounding}, {b, 0, rounding * rounding}};
+      return compare(cells, all_pairs(2), 1).front();
+    };
+    EXPECT_EQ(compared(near, unit).status, "equal") << unit;
+    EXPECT_FALSE(compared(near, unit).log_ratio);
+    EXPECT_NE(compared(far, unit).status, "equal") << unit;
+    EXPECT_NE(compared(near, 0).status, "equal") << unit;  // whose precision is not known
+    near[40] *= 1.001;
+    EXPECT_NE(compared(near, unit).status, "equal") << unit;
+  }
+}
+
+// Four replicates of heavy tails bound little: an interval beyond a million either way is none, and p stands.
+TEST(Compare, AnIntervalThatSaysNothingIsNone) {
+  std::mt19937_64 random(13);
+  std::normal_distribution<double> normal;
+  int none = 0, some = 0;
+  for (int k = 0; k < 50; ++k) {
+    Table table(2, std::vector<double>(4));
+    for (auto& cell : table) {
+      for (double& x : cell) x = std::exp(6 * normal(random));
+    }
+    const Comparison comparison = compare_two(table[0], table[1]);
+    EXPECT_TRUE(comparison.p && comparison.log_ratio);
+    (comparison.interval ? some : none) += 1;
+    if (comparison.interval) {
+      EXPECT_LE(comparison.interval->hi - *comparison.log_ratio, std::log(1e6));
+      EXPECT_LE(*comparison.log_ratio - comparison.interval->lo, std::log(1e6));
+    }
+  }
+  EXPECT_GT(none, 0);
+  EXPECT_GT(some, 0);
+}
+
 TEST(Compare, WhatIsDoubtfulIsMarkedAndStands) {
   const Table few = squared_normals(2, 15, 3), many = squared_normals(2, 64, 3);
   EXPECT_EQ(compare_two(few[0], few[1]).status, "few-replicates");

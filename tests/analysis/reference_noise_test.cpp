@@ -55,6 +55,22 @@ TEST(WidenedForReference, AddsInQuadratureOnEachSide) {
   EXPECT_NEAR(wide.hi - centre, 0.4 * std::sqrt(2.0), 1e-12);
 }
 
+// The ends of a mean's interval may be a factor 10¹² off: 10⁶ of its root.
+TEST(CorrectedMean, EndsThatSayNothingAreEmpty) {
+  const double mean = 0.04, far = std::log(1e12);
+  const auto near = corrected_mean(mean, Interval{std::log(mean) - 0.99 * far, std::log(mean) + 0.99 * far}, {});
+  EXPECT_TRUE(near.lo && near.hi);
+  const auto beyond = corrected_mean(mean, Interval{std::log(mean) - 1, std::log(mean) + 1.01 * far}, {});
+  EXPECT_TRUE(beyond.value && beyond.lo);
+  EXPECT_FALSE(beyond.hi);
+  const auto below = corrected_mean(mean, Interval{std::log(mean) - 1.01 * far, std::log(mean) + 1}, {});
+  EXPECT_TRUE(below.value && below.hi);
+  EXPECT_FALSE(below.lo);
+  const auto overflowing = corrected_mean(1e-300, Interval{-1000.0, 700.0}, {});
+  EXPECT_TRUE(overflowing.value);
+  EXPECT_FALSE(overflowing.lo || overflowing.hi);
+}
+
 // With the noisiest reference that a plan accepts, min(1 %, 0.25/√R) of the mean squared error, intervals still cover:
 // of 4000 runs that cover 95 %, fewer than 93 % or more than 97 % do with a probability below 1e-7.
 void expect_coverage(std::size_t pixels, std::int64_t replicates) {
