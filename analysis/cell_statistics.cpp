@@ -53,8 +53,7 @@ CellStatistics summarise(const CellData& data) {
     row.kurtosis = if_finite(data.sum_m4 / data.sum_m2_squared);
     row.kurtosis_corrected = corrected_kurtosis(data.sum_m2_squared, data.sum_m4, data.replicates);
   }
-  if (data.mse.mean > 0)
-    row.worst_share = if_finite(data.worst_squared_error / (data.mse.mean * static_cast<double>(data.integrals)));
+  row.worst_share = share_of_largest(data.worst_squared_error, data.other_squared_error);
 
   const CorrectedMean mse = corrected(data, &ReplicateErrors::mse, data.mse,
                                       {data.reference_mse, data.reference_mse_noise}, exact, !deterministic);

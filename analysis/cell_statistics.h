@@ -36,6 +36,7 @@ struct CellData {
   double sum_m2_squared = 0;              ///< Σ_p m2_p²
   double sum_m4 = 0;                      ///< Σ_p m4_p
   double worst_squared_error = 0;         ///< Σ of the mean e² of the worst_count(P) integrals where it is largest
+  double other_squared_error = 0;         ///< that of all others
   LogHistogram abs_error;                 ///< |e| over all (replicate, integral)
   double reference_mean = 0;              ///< mean of R̂ over p
   double reference_se = 0;                ///< standard error of that mean

@@ -115,7 +115,7 @@ CellData ImageErrors::data(std::uint64_t bootstrap_seed) const {
     m2_squared.add(m.m2() * m.m2());
     m4.add(m.m4());
   }
-  keep_largest(worst, worst_count(data.integrals));
+  data.other_squared_error = keep_largest(worst, worst_count(data.integrals));
   for (const double squared : worst) worst_sum.add(squared);
   data.worst_squared_error = worst_sum.value();
   data.sum_m2 = m2.value();

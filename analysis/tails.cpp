@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "analysis/compensated_sum.h"
+
 namespace halfslope {
 
 // For R independent values of one law with central moments μ4 and σ² (H. Cramér, "Mathematical Methods of Statistics",
@@ -35,11 +37,19 @@ double mean_squared_error(const Moments& moments, double truth) {
   return moments.m2() + bias * bias;
 }
 
-void keep_largest(std::vector<double>& values, std::int64_t count) {
+double keep_largest(std::vector<double>& values, std::int64_t count) {
   const auto larger = [](double a, double b) { return std::isnan(a) ? !std::isnan(b) : a > b; };
   const auto kept = std::min(values.size(), static_cast<std::size_t>(count));
   std::ranges::partial_sort(values, values.begin() + static_cast<std::ptrdiff_t>(kept), larger);
+  CompensatedSum others;
+  for (std::size_t k = kept; k < values.size(); ++k) others.add(values[k]);
   values.resize(kept);
+  return others.value();
+}
+
+std::optional<double> share_of_largest(double largest, double others) {
+  const double all = largest + others;
+  return all > 0 && std::isfinite(all) ? std::optional(largest / all) : std::nullopt;
 }
 
 }  // namespace halfslope

@@ -27,7 +27,12 @@ std::int64_t worst_count(std::int64_t integrals);
 /// Mean of (x − truth)² over the values x that the moments are of: m2 + (x̄ − truth)².
 double mean_squared_error(const Moments& moments, double truth);
 
-/// Keeps of `values` the `count` largest, descending (all where there are fewer); NaN counts as the largest.
-void keep_largest(std::vector<double>& values, std::int64_t count);
+/// Keeps of `values` the `count` largest, descending (all where there are fewer), and returns the sum of the others;
+/// NaN counts as the largest.
+double keep_largest(std::vector<double>& values, std::int64_t count);
+
+/// Of the largest of some non-negative terms and the sum of the others, the share of the largest in all: at most 1,
+/// however the sums are rounded. Empty where all are 0 or a sum is not finite.
+std::optional<double> share_of_largest(double largest, double others);
 
 }  // namespace halfslope

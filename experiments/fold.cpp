@@ -72,7 +72,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
       ++folded.regions[static_cast<std::uint32_t>(scene.source->region(pixel))].pixels;
   }
   std::vector<Moments> merged;  // of every integral, where batches have to be merged or an image is written
-  CompensatedSum abs_error, m2, m2_squared, m4;
+  CompensatedSum abs_error, m2, m2_squared, m4, other_squared_error;
   std::vector<double> worst;
   folded.first_bad_replicate = std::numeric_limits<std::uint64_t>::max();
   for (std::size_t b = 0; b < pass.batches_within(replicates); ++b) {
@@ -94,6 +94,7 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
       m2.add(part.spread.m2);
       m2_squared.add(part.spread.m2_squared);
       m4.add(part.spread.m4);
+      other_squared_error.add(part.other_squared_error);
       worst.insert(worst.end(), part.worst.begin(), part.worst.end());
       if (!part.integrals.empty()) {
         merged.resize(static_cast<std::size_t>(data.integrals));
@@ -142,10 +143,11 @@ FoldedCell fold_cell(const Plan& plan, const Cell& cell, const Reference& refere
   data.sum_m2 = m2.value() + spread.m2;
   data.sum_m2_squared = m2_squared.value() + spread.m2_squared;
   data.sum_m4 = m4.value() + spread.m4;
-  keep_largest(worst, worst_count(data.integrals));
+  other_squared_error.add(keep_largest(worst, worst_count(data.integrals)));
   CompensatedSum worst_sum;
   for (const double squared : worst) worst_sum.add(squared);
   data.worst_squared_error = worst_sum.value();
+  data.other_squared_error = other_squared_error.value();
   data.mae = abs_error.value() / static_cast<double>(replicates);
   if (cell.image) folded.integrals = std::move(merged);
   return folded;

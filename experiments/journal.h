@@ -1,6 +1,6 @@
 // The journal of a run: every finished unit of work, so that an interrupted run continues where it stopped.
 //
-// One append-only file. It begins with two lines, the magic "halfslope journal 1" and the header as JSON, and goes on
+// One append-only file. It begins with two lines, the magic "halfslope journal 3" and the header as JSON, and goes on
 // with records, numbers little-endian:
 //   u32 magic, u32 reserved = 0, u64 unit, u64 length, u64 checksum, then `length` bytes of payload.
 // The checksum is XXH64 of the payload, seeded by the XXH64 of the 24 bytes before the checksum, so it vouches for

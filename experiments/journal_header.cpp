@@ -7,7 +7,7 @@
 namespace halfslope {
 namespace {
 
-constexpr std::string_view kMagicLine = "halfslope journal 2\n";
+constexpr std::string_view kMagicLine = "halfslope journal 3\n";
 
 }  // namespace
 

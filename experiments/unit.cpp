@@ -38,6 +38,7 @@ void CellPart::append_to(std::vector<std::byte>& bytes) const {
   append_bytes<Moments>(bytes, std::span(integrals));
   append_bytes<double>(bytes, std::span(worst));
   append_bytes(bytes, spread);
+  append_bytes(bytes, other_squared_error);
   for (const std::uint64_t number : {nonfinite, first_bad_replicate, first_bad_pixel}) append_bytes(bytes, number);
   abs_error.append_to(bytes);
 }
@@ -51,6 +52,7 @@ CellPart CellPart::read(std::span<const std::byte> bytes) {
   part.integrals = take_bytes<Moments>(bytes, sizes[2]);
   part.worst = take_bytes<double>(bytes, sizes[3]);
   part.spread = take_bytes<SpreadSums>(bytes);
+  part.other_squared_error = take_bytes<double>(bytes);
   part.nonfinite = take_bytes<std::uint64_t>(bytes);
   part.first_bad_replicate = take_bytes<std::uint64_t>(bytes);
   part.first_bad_pixel = take_bytes<std::uint64_t>(bytes);
@@ -211,7 +213,7 @@ std::vector<CellPart> UnitEvaluator::evaluate(const Unit& unit, const std::funct
     }
   }
   const auto integrals = static_cast<std::int64_t>(scene.pixels.size() * channels);
-  for (CellPart& part : parts) keep_largest(part.worst, worst_count(integrals));
+  for (CellPart& part : parts) part.other_squared_error = keep_largest(part.worst, worst_count(integrals));
   return parts;
 }
 

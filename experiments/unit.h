@@ -37,6 +37,7 @@ struct CellPart {
   std::vector<Moments> integrals;         ///< each integral's; kept where other units or an image need them
   SpreadSums spread;                      ///< of the integrals, where no other unit has replicates of them
   std::vector<double> worst;              ///< likewise: the largest of their mean e², as many as the whole image keeps
+  double other_squared_error = 0;         ///< likewise: the sum of the others
   LogHistogram abs_error;
   std::uint64_t nonfinite = 0;
   std::uint64_t first_bad_replicate = 0, first_bad_pixel = 0;  ///< the first replicate with one, its first pixel

@@ -143,6 +143,7 @@ TEST(ImageErrorsTest, TheWorstPixelsShareOfTheError) {
   ImageErrors errors(reference);
   errors.add(image);
   EXPECT_THAT(errors.data(1).worst_squared_error, DoubleNear(13, 1e-12));
+  EXPECT_THAT(errors.data(1).other_squared_error, DoubleNear(1998 * 0.01, 1e-12));
 }
 
 }  // namespace

@@ -76,13 +76,32 @@ TEST(Worst, CountsAtLeastOneAndKeepsTheLargest) {
   EXPECT_EQ(worst_count(1001), 2);
   EXPECT_EQ(worst_count(18432), 19);
   std::vector<double> values = {1, 7, 3, 9, 2};
-  keep_largest(values, 2);
+  EXPECT_EQ(keep_largest(values, 2), 1 + 3 + 2);
   EXPECT_EQ(values, (std::vector<double>{9, 7}));
-  keep_largest(values, 5);
+  EXPECT_EQ(keep_largest(values, 5), 0);
   EXPECT_EQ(values.size(), 2u);
   std::vector<double> bad = {1, NAN, 3};
   keep_largest(bad, 1);
   EXPECT_TRUE(std::isnan(bad[0]));
+}
+
+// The largest are part of the whole, however the others and the sum are rounded.
+TEST(Worst, ShareIsNeverAboveOne) {
+  RunRandom random(3, 0, 0);
+  for (int k = 0; k < 1000; ++k) {
+    std::vector<double> values(1500);
+    for (std::size_t i = 0; i < 5; ++i) values[i * 7] = std::exp(20 * random.normal());
+    double largest = 0;
+    const double others = keep_largest(values, worst_count(1500));
+    for (const double value : values) largest += value;
+    const auto share = share_of_largest(largest, others);
+    ASSERT_TRUE(share);
+    EXPECT_LE(*share, 1);
+    EXPECT_GE(*share, 0.4);  // two of five
+  }
+  EXPECT_EQ(share_of_largest(3, 0), 1);
+  EXPECT_EQ(share_of_largest(3, 1), 0.75);
+  EXPECT_FALSE(share_of_largest(0, 0) || share_of_largest(NAN, 1) || share_of_largest(1, INFINITY));
 }
 
 double marked_share(const ErrorLaw& law, std::int64_t replicates, std::int64_t runs) {
