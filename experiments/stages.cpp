@@ -3,13 +3,16 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numeric>
 
+#include "analysis/status.h"
 #include "analysis/stopping.h"
 #include "experiments/budget.h"
 #include "experiments/interrupt.h"
+#include "experiments/joined.h"
 #include "experiments/parallel.h"
 #include "experiments/stopping_keys.h"
 
@@ -154,6 +157,44 @@ std::string stages_text(const Plan& plan) {
   return text;
 }
 
+/// One replicate of a randomised sampler is marked `deterministic` too, but more of them would have had an interval.
+TargetState state_of(const CellResult& cell, double target) {
+  const std::string& status = cell.statistics.status;
+  const bool alone = !cell.facts.deterministic && has_mark(status, "deterministic");
+  const bool nothing_to_know =
+      cell.statistics.invalid || has_mark(status, "infinite-variance") || has_mark(status, "exact");
+  return alone && !nothing_to_know ? TargetState::kOpen : target_state(cell.statistics, target);
+}
+
+/// What all cells came to: "every cell knows its rmse ±5%", or "3 of 7 cells know their rmse ±5%; 2 have no interval to
+/// narrow (1 exact, 1 deterministic); 2 missed it".
+std::string report_target(double target, const std::vector<CellResult>& cells) {
+  constexpr std::array kReasons = {"invalid", "infinite-variance", "exact", "deterministic"};
+  std::array<std::size_t, kReasons.size()> counts = {};
+  std::size_t reached = 0, missed = 0;
+  for (const CellResult& cell : cells) {
+    const TargetState state = state_of(cell, target);
+    reached += state == TargetState::kReached ? 1 : 0;
+    missed += state == TargetState::kOpen ? 1 : 0;
+    if (state != TargetState::kNone) continue;
+    const auto reason =
+        std::ranges::find_if(kReasons, [&](const char* mark) { return has_mark(cell.statistics.status, mark); });
+    ++counts[static_cast<std::size_t>(reason - kReasons.begin())];
+  }
+  if (reached == cells.size()) return fmt::format("every cell knows its {}", target_text(target));
+  std::string text = fmt::format("{} of {} cells {} {}", reached, cells.size(),
+                                 reached == 1 ? "knows its" : "know their", target_text(target));
+  std::vector<std::string> reasons;
+  for (std::size_t k = 0; k < kReasons.size(); ++k) {
+    if (counts[k] > 0) reasons.push_back(fmt::format("{} {}", counts[k], kReasons[k]));
+  }
+  const std::size_t none = cells.size() - reached - missed;
+  if (none > 0)
+    text += fmt::format("; {} {} no interval to narrow ({})", none, none == 1 ? "has" : "have", joined(reasons));
+  if (missed > 0) text += fmt::format("; {} missed it", missed);
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::uint64_t> units_between(const Pass& pass, std::int64_t first_replicate, std::int64_t last_replicate) {
@@ -176,7 +217,7 @@ void set_replicates(Plan& plan, const std::vector<std::int64_t>& replicates) {
 
 void mark_missed(Results& results, double target) {
   for (CellResult& cell : results.cells) {
-    if (target_state(cell.statistics, target) != TargetState::kOpen) continue;
+    if (state_of(cell, target) != TargetState::kOpen) continue;
     std::string& status = cell.statistics.status;
     status = status == "ok" ? "target-missed" : status + ";target-missed";
   }
@@ -210,16 +251,11 @@ std::string describe_stopping(const Spec& spec, const Plan& plan) {
 std::string report_stopping(const Spec& spec, const Plan& plan, const Results& results) {
   if (!spec.in_stages()) return "";
   const auto [least, most] = std::ranges::minmax(plan.passes, {}, &Pass::replicates);
-  std::string text = fmt::format("{}: {} to {} replicates a pass, {} samples", spec.name, least.replicates,
-                                 most.replicates, short_count(plan.evaluations()));
-  if (spec.target) {
-    const auto missed = std::ranges::count_if(results.cells, [](const CellResult& cell) {
-      return cell.statistics.status.find("target-missed") != std::string::npos;
-    });
-    text += missed == 0
-                ? fmt::format("; every cell knows its {}", target_text(*spec.target))
-                : fmt::format("; {} of {} cells missed {}", missed, results.cells.size(), target_text(*spec.target));
-  }
+  std::string text =
+      fmt::format("{}: {}{} {} a pass, {} samples", spec.name,
+                  least.replicates < most.replicates ? fmt::format("{} to ", least.replicates) : "", most.replicates,
+                  most.replicates == 1 ? "replicate" : "replicates", short_count(plan.evaluations()));
+  if (spec.target) text += "; " + report_target(*spec.target, results.cells);
   return text + "\n";
 }
 

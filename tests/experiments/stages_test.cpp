@@ -160,6 +160,44 @@ TEST(Stages, CellsThatDoNotGetThereAreMarked) {
   EXPECT_EQ(few.results.cells[0].statistics.status, "few-replicates;target-missed");
 }
 
+// "Every cell knows its rmse" where every cell does, and else who does, who has nothing to know and why, and who
+// missed.
+TEST(Stages, TheReportCountsWhatBecameOfTheCells) {
+  const RunScope scope;
+  int runs = 0;
+  const auto report = [&](const Keys& keys) {
+    const std::string folder = "run" + std::to_string(++runs);
+    const RunOutcome outcome = scope.run(keys, folder.c_str());
+    return report_stopping(spec_of(keys), outcome.plan, outcome.results);
+  };
+  const Keys disk = {{"scene", "quarterdisk"}, {"samplers", "independent"}, {"samples", "4"}, {"target", "rmse ±40%"}};
+  EXPECT_THAT(report(disk), HasSubstr("run: 64 replicates a pass, 256 samples; every cell knows its rmse ±40%\n"));
+  EXPECT_THAT(report(with(disk, {{"scene", "quarterdisk,invr,mis-toy"},
+                                 {"estimators", "mean,bsdf"},
+                                 {"samplers", "independent,halton"}})),
+              HasSubstr("; 1 of 6 cells knows its rmse ±40%; 5 have no interval to narrow (1 infinite-variance, "));
+  EXPECT_THAT(report(with(disk, {{"target", "rmse 1%"}, {"replicates", "64"}})),
+              HasSubstr("; 0 of 1 cells know their rmse ±1%; 1 missed it\n"));
+  EXPECT_THAT(report(with(disk, {{"scene", "invr"}})),
+              HasSubstr("; 0 of 1 cells know their rmse ±40%; 1 has no interval to narrow (1 infinite-variance)\n"));
+}
+
+// One replicate has no interval, so it does not tell the target, unless the sampler has no more of them.
+TEST(Stages, OneReplicateOfARandomisedSamplerMissesTheTarget) {
+  const RunScope scope;
+  const Keys keys = {{"scene", "quarterdisk"},
+                     {"samplers", "independent,halton"},
+                     {"samples", "4"},
+                     {"target", "rmse ±40%"},
+                     {"replicates", "1"}};
+  const RunOutcome outcome = scope.run(keys);
+  EXPECT_EQ(outcome.results.cells[0].statistics.status, "deterministic;target-missed");
+  EXPECT_EQ(outcome.results.cells[1].statistics.status, "deterministic");
+  EXPECT_THAT(report_stopping(spec_of(keys), outcome.plan, outcome.results),
+              HasSubstr(": 1 replicate a pass, 8 samples; 0 of 2 cells know their rmse ±40%; 1 has no interval to "
+                        "narrow (1 deterministic); 1 missed it\n"));
+}
+
 std::string journal_of(const RunScope& scope, const char* out) { return read_file(scope.path(out) / "journal"); }
 
 // Bytes are a function of the experiment: whatever the threads, wherever it was cut off, whatever target was there
