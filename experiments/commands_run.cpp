@@ -116,12 +116,16 @@ std::vector<Listed> listed(const std::string& what, const Catalogue& catalogue) 
         {"variance", "of a rate: fitted to the sample variance, which needs no reference", "", ""},
         {"many-replicates", "above 4096 replicates: they are not kept, so the rate has no interval", "", ""},
         {"equal",
-         "both sides of a comparison have the same squared errors, replicate by replicate: there is nothing to tell",
+         "both sides of a comparison have the same squared errors but for rounding, replicate by replicate: there is "
+         "nothing to tell",
          "", ""},
         {"few-repetitions", "fewer than 6 timings: their range covers the median with less than 95 %", "", ""},
-        {"below-range", "equal time or error: the line's smallest N takes longer already, or errs less already", "",
+        {"below-range",
+         "equal time or error: the line's smallest N with an rmse takes longer already, or errs less already", "", ""},
+        {"above-range", "equal time or error: the line's largest N with an rmse takes less, or errs more still", "",
          ""},
-        {"above-range", "equal time or error: the line's largest N takes less, or errs more still", "", ""},
+        {"exact", "equal time or error: the line's errors are 0 there, or at a neighbouring N", "", ""},
+        {"no-rmse", "equal time or error: no N of the line has an rmse; its cells say why", "", ""},
         {"uncertified", "equal time or error: read off between cells whose intervals are not certified", "", ""}};
   }
   return rows;
@@ -163,7 +167,7 @@ int run_command(const RunArguments& arguments, const Catalogue& catalogue) {
   } else if (!arguments.quiet) {
     const std::string measured = measures_summary(outcome.plan.measures, outcome.measured);
     const std::string timed = timing_summary(outcome.timed);
-    const std::string theory = spec.checks.empty() ? "" : theory_summary(outcome.theory) + "\n";
+    const std::string theory = spec.checks.empty() ? "" : theory_summary(outcome.theory, spec.checks) + "\n";
     fmt::print("{}\n{}{}{}{}{}Tables and images: {}\n", summary(outcome.results), measured,
                measured.empty() ? "" : "\n", timed, timed.empty() ? "" : "\n", theory, out);
   }

@@ -55,7 +55,8 @@ TheoryReport check_theory(std::span<const std::string> checks, const Plan& plan,
                           std::span<const Reference> references);
 
 std::string theory_csv(const TheoryReport& report);
-/// How many hold, by check and scene, how near they are, and every one that is violated.
-std::string theory_summary(const TheoryReport& report);
+/// How many hold, by check and scene, how near they are, every one that is violated, and which of `checks`, those that
+/// were asked for, found nothing to check, and what they need.
+std::string theory_summary(const TheoryReport& report, std::span<const std::string> checks);
 
 }  // namespace halfslope

@@ -17,6 +17,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// All to the technique with the smallest density.
 double worst(const double* ratios, int techniques, int i) {
@@ -108,7 +109,7 @@ TEST(Theory, WhatIsWrongIsFound) {
   const std::vector<std::string> exact = {"exact-variance"}, bound = {"balance-bound"};
   const TheoryReport off = check_theory(exact, outcome.plan, outcome.results, references);
   EXPECT_EQ(off.violated(), off.rows.size());
-  EXPECT_THAT(theory_summary(off), HasSubstr("violated: exact-variance, mis-toy,balance,independent,f64,2048"));
+  EXPECT_THAT(theory_summary(off, exact), HasSubstr("violated: exact-variance, mis-toy,balance,independent,f64,2048"));
   // And were balance's errors larger than the bound allows.
   for (CellResult& cell : outcome.results.cells) {
     if (cell.name.estimator != "balance") continue;
@@ -134,6 +135,29 @@ TEST(Theory, WhatCannotBeJudgedSaysWhy) {
   EXPECT_EQ(row(many.theory, "balance-bound", "power").verdict, "many-replicates");
   EXPECT_EQ(row(many.theory, "exact-variance", "power").verdict, "holds");
   EXPECT_EQ(row(many.theory, "exact-variance", "optimal").verdict, "asymptotic");
+}
+
+// A finished run is checked without being measured again.
+TEST(Theory, ChecksAreNoPartOfWhatIsMeasured) {
+  Spec spec = toy_spec();
+  const std::string with = canonical_json(spec);
+  spec.checks.clear();
+  EXPECT_EQ(canonical_json(spec), with);
+}
+
+TEST(Theory, NothingToCheckIsNotNothingViolated) {
+  const TemporaryFolder folder;
+  Spec spec = toy_spec();
+  spec.scenes = {"quarterdisk"};
+  spec.estimators = {"mean"};
+  spec.samplers = {"independent"};
+  spec.samples = {{16}, false};
+  const RunOutcome outcome = run(spec, Catalogue::built_in(), folder);
+  ASSERT_TRUE(outcome.theory.rows.empty());
+  const std::string text = theory_summary(outcome.theory, spec.checks);
+  EXPECT_THAT(text, HasSubstr("theory: nothing could be checked\n"));
+  EXPECT_THAT(text, HasSubstr("exact-variance found nothing to check: it needs a scene whose densities are known"));
+  EXPECT_THAT(text, Not(HasSubstr("violated")));
 }
 
 TEST(Theory, ProgressiveWeightsAreLeftOutOfSets) {
