@@ -44,6 +44,17 @@ bool equal_but_for_rounding(const ComparedErrors& a, const ComparedErrors& b, st
                             [&](double x, double y) { return equal_but_for_rounding(x, y, epsilon); });
 }
 
+/// Whether a mean of squared errors may be rounding alone.
+bool is_rounding(const Column& column, const ComparedErrors& cell) {
+  return column.measured < kRoundingReach * cell.rounding_mse;
+}
+
+/// Whether squared errors differ by more than rounding.
+bool has_spread(const Column& column) {
+  const double rounding = 1e-13 * column.measured / column.corrected;
+  return std::ranges::any_of(column.deviations, [&](double x) { return std::abs(x) > rounding; });
+}
+
 bool usable(std::span<const double> errors) {
   return std::ranges::all_of(errors, [](double error) { return std::isfinite(error) && error >= 0; });
 }
@@ -64,6 +75,7 @@ bool begin_comparison(Comparison& comparison, std::span<const ComparedErrors> ce
   status.mark_if(!usable(errors_a) || !usable(errors_b), "invalid");
   status.mark_if(status.ok() && (x.measured == 0 || y.measured == 0), "exact");
   status.mark_if(status.ok() && equal_but_for_rounding(cells[a], cells[b], rows), "equal");
+  status.mark_if(status.ok() && (is_rounding(x, cells[a]) || is_rounding(y, cells[b])), "floor");
   const bool measured = status.ok();
   status.mark_if(measured && (cells[a].reference_mse > kReferenceShare * x.measured ||
                               cells[b].reference_mse > kReferenceShare * y.measured),
@@ -79,7 +91,7 @@ bool begin_comparison(Comparison& comparison, std::span<const ComparedErrors> ce
       largest = std::max({largest, std::abs(x.deviations[r]), std::abs(y.deviations[r])});
     }
     const InfluenceSpread found = influence_spread(influences);
-    spread = found.deviation > 1e-13 * largest;  // less is rounding
+    spread = has_spread(x) && has_spread(y) && found.deviation > 1e-13 * largest;  // less is rounding
     if (spread) comparison.spread = found;
     status.mark_if(!spread, "no-spread");
   }

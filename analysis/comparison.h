@@ -79,8 +79,10 @@ struct Comparison {
 ///
 /// Marks that refuse a comparison: `many-replicates` (squared errors were not kept), `deterministic` (R = 1), `invalid`
 /// (a squared error is not finite, or negative), `exact` (an M is 0), `equal` (the same squared errors on
-/// both sides, but for kRoundings rounding errors of the estimates), `no-spread` (the influences are equal: the ratio
-/// stands, with nothing to say how sure it is), `reference-limited` (an M − V̄ is not positive). That do not:
+/// both sides, but for kRoundings rounding errors of the estimates), `floor` (an M may be rounding alone: below 100 ·
+/// rounding_mse), `no-spread` (the influences are equal, or all replicates of one side err alike, which have met too
+/// little to know their error: the ratio stands, with nothing to say how sure it is), `reference-limited` (an M − V̄ is
+/// not positive). That do not:
 /// `few-replicates` (R < 16), `reference-limited` (V̄ above 10 % of an M).
 ///
 /// Predictions (analysis/power.h) hold against the family's critical value of the first step, the 0.95 (B + 1)-th of

@@ -48,7 +48,10 @@ std::vector<Line> lines_of(const Results& results, const ComparisonFamily& famil
 class Lookup {
  public:
   explicit Lookup(const ComparisonFamily& family) {
-    for (const ComparedCells& row : family.rows) rows_.emplace(std::pair(row.a, row.b), &row.comparison);
+    for (const ComparedCells& row : family.rows) {
+      rows_.emplace(std::pair(row.a, row.b), &row.comparison);
+      for (const std::size_t c : {row.a, row.b}) said_[c] = said_[c] || ranked(row.a, row.b);
+    }
   }
 
   const Comparison* find(std::size_t a, std::size_t b) const {
@@ -72,9 +75,17 @@ class Lookup {
     return comparison && (comparison->verdict != Verdict::kNone || alike(a, b));
   }
 
+  /// The cells, and whether any comparison says something of each.
+  const std::map<std::size_t, bool>& said() const { return said_; }
+
  private:
+  std::map<std::size_t, bool> said_;
   std::map<std::pair<std::size_t, std::size_t>, const Comparison*> rows_;
 };
+
+std::string with_status(const std::string& name, const CellResult& cell) {
+  return fmt::format("{} ({})", name, cell.statistics.status);
+}
 
 std::string and_joined(const std::vector<std::string>& names) {
   if (names.size() < 2) return names.empty() ? "" : names[0];
@@ -193,21 +204,27 @@ std::string wrapped(const std::string& words, const std::string& indent) {
 
 std::string all_pairs_text(const Line& line, const Results& results, const Lookup& lookup) {
   Group ranked;
+  std::vector<std::string> unranked;  // here, though not everywhere
   for (std::size_t k = 0; k < line.cells.size(); ++k) {
-    if (std::ranges::any_of(line.cells, [&](std::size_t other) { return lookup.ranked(line.cells[k], other); }))
+    const std::size_t cell = line.cells[k];
+    if (std::ranges::any_of(line.cells, [&](std::size_t other) { return lookup.ranked(cell, other); })) {
       ranked.push_back(k);
+    } else if (const auto said = lookup.said().find(cell); said != lookup.said().end() && said->second) {
+      unranked.push_back(with_status(line.names[k], results.cells[cell]));
+    }
   }
   if (ranked.empty()) return "";
+  const std::string rest = unranked.empty() ? "" : wrapped("not compared: " + joined(unranked), "    ");
   const std::vector<Group> order = certain_order(line, ranked, results, lookup);
   const Group first = take_unbeaten(line, ranked, lookup), second = take_unbeaten(line, ranked, lookup);
   const std::string tie = tie_text(line, first, lookup), win = win_text(line, first, second, lookup);
-  if (second.empty() && !tie.empty()) return wrapped(line.title + ": " + tie, "  ");
+  if (second.empty() && !tie.empty()) return wrapped(line.title + ": " + tie, "  ") + rest;
   std::string chain;
   for (const Group& group : order) chain += (chain.empty() ? "" : " < ") + joined(names_of(line, group));
   std::string text = wrapped(line.title + ": " + chain, "  ");
   if (!tie.empty()) text += wrapped("beaten by none: " + tie, "    ");
   if (!win.empty()) text += wrapped(win, "    ");
-  return text;
+  return text + rest;
 }
 
 // Too many for all pairs: what is known is where each stands beside the first.
@@ -231,23 +248,25 @@ std::string with_first_text(const Line& line, const Lookup& lookup) {
   return text;
 }
 
-/// Samplers of which no comparison says anything, with the mark of the first: "halton (deterministic)".
-std::string not_compared(const Results& results, const ComparisonFamily& family) {
-  std::vector<std::pair<std::string, std::string>> marks;  // by sampler; empty where something is said
-  for (const ComparedCells& row : family.rows) {
-    const bool said = row.comparison.verdict != Verdict::kNone || row.comparison.status.starts_with("equal");
-    for (const std::size_t c : {row.a, row.b}) {
-      const std::string& sampler = results.cells[c].name.sampler;
-      auto found = std::ranges::find(marks, sampler, &std::pair<std::string, std::string>::first);
-      if (found == marks.end()) found = marks.insert(found, {sampler, results.cells[c].statistics.status});
-      if (said) found->second.clear();
-    }
+/// "halton (deterministic), bsdf (exact)": the cells of which no comparison says anything, with their status; by the
+/// sampler or the estimator alone where that is so of all its cells.
+std::string not_compared(const Results& results, const Lookup& lookup) {
+  std::vector<std::string> names;
+  const auto nothing_of = [&](std::string CellName::*part, const CellName& name) {
+    return std::ranges::all_of(lookup.said(), [&](const auto& entry) {
+      return results.cells[entry.first].name.*part != name.*part || !entry.second;
+    });
+  };
+  for (const auto& [cell, says] : lookup.said()) {
+    if (says) continue;
+    const CellName& name = results.cells[cell].name;
+    const std::string shortest = nothing_of(&CellName::sampler, name)     ? name.sampler
+                                 : nothing_of(&CellName::estimator, name) ? name.estimator
+                                                                          : name.estimator + " on " + name.sampler;
+    const std::string text = with_status(shortest, results.cells[cell]);
+    if (std::ranges::find(names, text) == names.end()) names.push_back(text);
   }
-  std::vector<std::string> samplers;
-  for (const auto& [sampler, mark] : marks) {
-    if (!mark.empty()) samplers.push_back(fmt::format("{} ({})", sampler, mark));
-  }
-  return samplers.empty() ? "" : wrapped("not compared: " + joined(samplers), "  ");
+  return names.empty() ? "" : wrapped("not compared: " + joined(names), "  ");
 }
 
 }  // namespace
@@ -259,7 +278,7 @@ std::string comparisons_text(const Results& results, const ComparisonFamily& fam
     text += family.with_first_only ? with_first_text(line, lookup) : all_pairs_text(line, results, lookup);
   }
   if (text.empty()) return "";
-  text += not_compared(results, family);
+  text += not_compared(results, lookup);
   const auto count =
       std::ranges::count_if(family.rows, [](const ComparedCells& row) { return row.comparison.p.has_value(); });
   return fmt::format(

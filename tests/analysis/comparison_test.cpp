@@ -159,6 +159,9 @@ TEST(Compare, NothingIsRankedWhereNothingIsKnown) {
   EXPECT_EQ(status(compare_two(errors, zeros)), "exact");
   EXPECT_EQ(status(compare_two(errors, errors)), "equal");
   EXPECT_EQ(status(compare_two(constant, other)), "no-spread");
+  EXPECT_EQ(status(compare_two(constant, errors)), "no-spread");  // one side's error may be anything
+  const ComparedErrors at_rounding[] = {{errors, 0, 1e-6}, {constant, 0, 1}};
+  EXPECT_EQ(status(compare(at_rounding, all_pairs(2), 1).front()), "floor");
   EXPECT_EQ(status(compare_two(errors, constant, 2.5)), "reference-limited");
   std::vector<double> twice = errors;
   for (double& x : twice) x *= 3;

@@ -100,6 +100,22 @@ TEST(CompareCells, MarksOfTheCellsAreThoseOfTheirComparisons) {
   EXPECT_TRUE(rows[1].comparison.interval);
 }
 
+// The best estimator of all must not be missing from a ranking without a word.
+TEST(ComparisonsText, NamesWhatIsNotInARanking) {
+  std::vector<CellResult> cells = {cell_of("bsdf", "a", 1, 1),    cell_of("bsdf", "b", 1, 2),
+                                   cell_of("light", "a", 100, 3), cell_of("light", "b", 100, 4),
+                                   cell_of("power", "a", 1, 5),   cell_of("power", "b", 2, 6)};
+  for (const std::size_t exact : {0u, 1u, 4u}) {
+    std::ranges::fill(cells[exact].replicate_mse, 0.0);
+    cells[exact].mse = 0;
+    cells[exact].statistics.status = "exact";
+  }
+  const Results results = results_of(cells);
+  const std::string text = comparisons_text(results, results.comparisons[0]);
+  EXPECT_THAT(text, HasSubstr("  b: power < light\n"));
+  EXPECT_THAT(text, HasSubstr("\n  not compared: bsdf (exact), power on a (exact)\n"));
+}
+
 TEST(ComparisonsText, SaysWhoBeatsWhomAndWhoCannotBeToldApart) {
   const Results results = results_of({cell_of("mean", "worst", 100, 1), cell_of("mean", "good", 1, 2),
                                       cell_of("mean", "fine", 1.02, 3), deterministic("mean", "grid")});
