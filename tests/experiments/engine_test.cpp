@@ -15,6 +15,7 @@
 namespace halfslope {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 double mean(const std::vector<double>& values) {
@@ -89,7 +90,12 @@ TEST(Engine, TheColumnsFollowFromTheReplicates) {
     EXPECT_TRUE(near(rmse * rmse + v, mean(mse), 1e-12));
     if (std::ranges::count(mse, mse[0]) < 21) {
       EXPECT_LT(cells.number(r, "rmse_lo"), rmse);
-      EXPECT_GT(cells.number(r, "rmse_hi"), rmse);
+      if (cells.text(r, "rmse_hi").empty()) {  // beyond a million times the rmse: of rare large errors alone
+        EXPECT_THAT(cells.text(r, "status"), HasSubstr("heavy-tailed"));
+      } else {
+        EXPECT_GT(cells.number(r, "rmse_hi"), rmse);
+        EXPECT_LE(cells.number(r, "rmse_hi"), 1e6 * rmse);
+      }
     } else {  // the cap's bsdf technique only counts hits, and a few good points hit equally often every time
       EXPECT_THAT(cells.text(r, "rmse_lo") + cells.text(r, "rmse_hi"), IsEmpty());
       EXPECT_EQ(cells.text(r, "estimator"), "bsdf");
