@@ -49,6 +49,23 @@ TEST(TailsTable, TheWorstShareIsThatOfTheLargestMeanSquaredErrors) {
   EXPECT_EQ(kept.results.cells[0].statistics.worst_share, share);
 }
 
+// One integral has all of the error, to the last bit, however many batches its replicates came in.
+TEST(TailsTable, OfOneIntegralTheWorstShareIsOne) {
+  const RunScope scope;
+  for (const char* replicates : {"20", "600"}) {
+    scope.run({{"scene", "mis-toy"},
+               {"estimators", "light,balance,power"},
+               {"samplers", "independent,sobol-owen"},
+               {"samples", "4:1024"},
+               {"precision", "f32,f64"},
+               {"replicates", replicates}},
+              replicates);
+    const CsvTable tails = scope.table("tails.csv", replicates);
+    ASSERT_EQ(tails.size(), 3u * 2 * 9 * 2);
+    for (std::size_t row = 0; row < tails.size(); ++row) EXPECT_EQ(tails.number(row, "worst_share"), 1);
+  }
+}
+
 TEST(TailsTable, IntervalsFollowTheMethodAndEstimatesDoNot) {
   const RunScope scope;
   std::map<std::string, std::string> keys = {{"scene", "mis-toy"},
