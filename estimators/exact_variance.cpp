@@ -30,9 +30,9 @@ class Quadrature {
   std::size_t techniques() const { return n_; }
   double count(std::size_t k) const { return estimator_.allocation.counts[k]; }
 
-  /// Adaptive, to an error that is small beside the integral of an integrand that is nowhere negative.
+  /// Adaptive, to an error of `tolerance` times the integral of the integrand's size.
   template <class Value>
-  double integrate(const Value& value) const {
+  double integrate(const Value& value, double tolerance = 1e-10) const {
     std::vector<Piece> pieces;
     double total = 0;
     for (std::size_t i = 0; i + 1 < densities_.breaks.size(); ++i) {
@@ -50,10 +50,9 @@ class Quadrature {
     for (const Piece& p : pieces) total += std::fabs(p.integral);
     // A jump takes some thirty; where only rounding is left to be seen there is no end to refine to.
     constexpr int kMostHalvings = 1000;
-    constexpr double kTolerance = 1e-10;
     const auto less = [](const Piece& p, const Piece& q) { return p.error < q.error; };
     std::make_heap(pieces.begin(), pieces.end(), less);
-    for (int h = 0; h < kMostHalvings && pieces.front().error > kTolerance * total; ++h) {
+    for (int h = 0; h < kMostHalvings && pieces.front().error > tolerance * total; ++h) {
       std::pop_heap(pieces.begin(), pieces.end(), less);
       const Piece worst = pieces.back();
       const double middle = worst.begin + (worst.end - worst.begin) / 2;
@@ -108,34 +107,52 @@ double difference(double a, double b) {
   return std::fabs(a - b) > kQuadratureError * std::fabs(a) ? a - b : 0;
 }
 
-/// ∫ p (w f / (share p) − mean)².
-double spread(const Quadrature& q, std::size_t k, double share, double mean) {
-  return q.integrate([&](const At& here) {
-    const double p = here.pdfs[k];
-    if (p == 0) return 0.0;
-    const double d = difference(here.weights[k] * here.f / (share * p), mean);
-    return p * d * d;
-  });
+/// ∫ p_k (X − mean)^j for j = 2 … 8, where a sample of technique k is worth X; [0] and [1] stay 0.
+using CentralMoments = std::array<double, Cumulants::kHighest + 1>;
+template <class Worth>
+CentralMoments central_moments(const Quadrature& q, std::size_t k, double mean, const Worth& worth) {
+  // From the third on they say how a sample variance spreads, of which less need be known.
+  constexpr double kTolerance = 1e-10, kHigherTolerance = 1e-6;
+  CentralMoments moments = {};
+  for (std::size_t j = 2; j < moments.size(); ++j) {
+    const auto value = [&](const At& here) {
+      const double p = here.pdfs[k];
+      if (p == 0) return 0.0;
+      const double d = difference(worth(here), mean);
+      double power = p * d * d;
+      for (std::size_t i = 2; i < j; ++i) power *= d;
+      return power;
+    };
+    moments[j] = q.integrate(value, j == 2 ? kTolerance : kHigherTolerance);
+  }
+  return moments;
 }
 
-double fold_variance(const Quadrature& q) {
-  double sum = 0;
+Cumulants fold_cumulants(const Quadrature& q) {
+  Cumulants round;
   for (std::size_t k = 0; k < q.techniques(); ++k) {
     const double mean = q.integrate([&](const At& here) { return here.weights[k] * here.f; });
-    sum += spread(q, k, 1, mean) / q.count(k);
+    const auto worth = [&](const At& here) { return here.weights[k] * here.f / here.pdfs[k]; };
+    round.add(cumulants_from_central_moments(mean, central_moments(q, k, mean, worth)), q.count(k), 1 / q.count(k));
   }
-  return sum;
+  return round;
 }
 
-double one_sample_variance(const Quadrature& q) {
+Cumulants one_sample_cumulants(const Quadrature& q) {
   const double mean = q.integrate([](const At& here) { return here.f; });
-  double all = 0, sum = 0;
+  double all = 0;
   for (std::size_t k = 0; k < q.techniques(); ++k) all += q.count(k);
-  for (std::size_t k = 0; k < q.techniques(); ++k) sum += q.count(k) / all * spread(q, k, q.count(k) / all, mean);
-  return sum;
+  CentralMoments mixed = {};
+  for (std::size_t k = 0; k < q.techniques(); ++k) {
+    const double share = q.count(k) / all;
+    const auto worth = [&](const At& here) { return here.weights[k] * here.f / (share * here.pdfs[k]); };
+    const CentralMoments moments = central_moments(q, k, mean, worth);
+    for (std::size_t j = 2; j < mixed.size(); ++j) mixed[j] += share * moments[j];
+  }
+  return cumulants_from_central_moments(mean, mixed);
 }
 
-double optimal_variance(const Quadrature& q) {
+Cumulants optimal_cumulants(const Quadrature& q) {
   const auto n = static_cast<Eigen::Index>(q.techniques());
   const auto pdf = [](const At& here, Eigen::Index k) { return here.pdfs[static_cast<std::size_t>(k)]; };
   const auto over_mixture = [](const At& here, double x) { return here.mixture > 0 ? x / here.mixture : 0; };
@@ -149,21 +166,25 @@ double optimal_variance(const Quadrature& q) {
     }
   }
   const Eigen::VectorXd alpha = gram.completeOrthogonalDecomposition().solve(moments);
-  return q.integrate([&](const At& here) {
+  const auto worth = [&](const At& here) {
     double fit = 0;
     for (Eigen::Index k = 0; k < n; ++k) fit += alpha[k] * pdf(here, k);
-    const double g = difference(here.f, fit);
-    return over_mixture(here, g * g);
-  });
+    return over_mixture(here, difference(here.f, fit));
+  };
+  Cumulants round;
+  for (std::size_t k = 0; k < q.techniques(); ++k)
+    round.add(cumulants_from_central_moments(0, central_moments(q, k, 0, worth)), q.count(k));
+  round.orders[1] = alpha.sum();
+  return round;
 }
 
 }  // namespace
 
-std::optional<double> exact_round_variance(const Estimator& estimator, const ExactDensities& densities) {
+std::optional<Cumulants> exact_round_cumulants(const Estimator& estimator, const ExactDensities& densities) {
   const Quadrature q(estimator, densities);
   if (estimator.heuristic.kind == HeuristicKind::kOptimalProgressive) return std::nullopt;
-  if (estimator.heuristic.kind == HeuristicKind::kOptimal) return optimal_variance(q);
-  return estimator.allocation.one_sample ? one_sample_variance(q) : fold_variance(q);
+  if (estimator.heuristic.kind == HeuristicKind::kOptimal) return optimal_cumulants(q);
+  return estimator.allocation.one_sample ? one_sample_cumulants(q) : fold_cumulants(q);
 }
 
 }  // namespace halfslope

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
+#include "analysis/cumulants.h"
 #include "analysis/intervals.h"
 #include "analysis/moments.h"
+#include "analysis/sample_variance.h"
 #include "estimators/exact_variance.h"
 
 namespace halfslope {
@@ -21,6 +25,7 @@ constexpr double kFamilyError = 0.01;
 constexpr std::int64_t kFewest = 16;         // replicates of an interval that is certified
 constexpr std::uint64_t kAsymptotic = 1024;  // rounds
 constexpr double kAsymptoticError = 0.03;
+constexpr double kQuadratureError = 1e-10;  // of a mean: variances below its square are not known
 
 /// A comparison before its interval is known, whose level depends on how many there are.
 struct Open {
@@ -28,7 +33,7 @@ struct Open {
   /// Differences over replicates, of each alternative: the bound is broken where it is for all of them.
   std::vector<Moments> differences;
   double slack = 0;           ///< what rounding may add to a difference
-  double log_error = 0;       ///< standard error of log variance, for exact-variance
+  Cumulants replicate;        ///< exact ones of a replicate's value, for exact-variance
   double relative_error = 0;  ///< what the prediction may be off by
   std::int64_t replicates = 0;
   bool judged() const { return row.verdict.empty(); }
@@ -179,30 +184,38 @@ class Checker {
     const Cell& cell = plan_.cells[c];
     const auto densities = plan_.scenes[cell.scene].source->exact_densities();
     if (!densities) return;
-    const auto variance = exact_round_variance(estimator(c), *densities);
-    if (!variance) return;
+    const std::optional<Cumulants>& round = exact_round(cell, *densities);
+    if (!round) return;
     const CellResult& result = results_.cells[c];
     const CellStatistics& s = result.statistics;
     Open open = start(c, "exact-variance");
     const auto rounds = cell.samples / static_cast<std::uint64_t>(estimator(c).allocation.round());
-    open.row.expected = *variance / static_cast<double>(rounds);
+    open.replicate = round->of_mean(static_cast<double>(rounds));
+    const double expected = open.replicate[2], measured = s.variance.value_or(0);
+    open.row.expected = expected;
     open.row.measured = s.variance;
     const bool optimal = estimator(c).heuristic.kind == HeuristicKind::kOptimal;
-    if (optimal) open.relative_error = kAsymptoticError;
-    const double resolved = 100 * result.facts.rounding_mse;
+    // Numbers of variance V that rounding moves by ε have one within V (1 ± ε/√V)².
+    const double rounding = expected > 0 ? std::sqrt(result.facts.rounding_mse / expected) : 0;
+    open.relative_error = (optimal ? kAsymptoticError : 0) + rounding * (2 + rounding);
+    const double resolved = 100 * result.facts.rounding_mse, known = kQuadratureError * (*round)[1];
     const auto say = [&](bool so, const char* verdict) {
       if (so && open.judged()) open.row.verdict = verdict;
     };
     say(s.invalid, "invalid");
     say(!s.variance, "deterministic");
     say(optimal && rounds < kAsymptotic, "asymptotic");
-    say(std::max(s.variance.value_or(0), *open.row.expected) <= resolved, "holds");  // both 0 but for rounding
-    say(s.variance.value_or(0) <= resolved, "no-spread");
-    say(s.status.find("heavy-tailed") != std::string::npos, "heavy-tailed");
-    // Var(s²)/σ⁴ = (κ − (R − 3)/(R − 1))/R.
-    const auto R = static_cast<double>(result.replicates);
-    if (open.judged()) open.log_error = std::sqrt((s.kurtosis.value_or(3) - (R - 3) / (R - 1)) / R);
+    say(std::max(measured, expected) <= resolved, "holds");  // both 0 but for rounding
+    say(!has_sample_variance_range(open.replicate, open.replicates), "heavy-tailed");
+    say(measured <= resolved && (*round)[2] <= known * known, "no-spread");
     open_.push_back(std::move(open));
+  }
+
+  // Of one round of the cell's estimator, which every N of it shares.
+  const std::optional<Cumulants>& exact_round(const Cell& cell, const ExactDensities& densities) {
+    const auto [at, is_new] = rounds_.try_emplace({cell.scene, cell.estimator});
+    if (is_new) at->second = exact_round_cumulants(plan_.scenes[cell.scene].estimators[cell.estimator], densities);
+    return at->second;
   }
 
   static void judge_bound(Open& open, double level) {
@@ -217,16 +230,18 @@ class Checker {
 
   static void judge_prediction(Open& open, double level) {
     TheoryRow& row = open.row;
-    const double half = t_quantile(0.5 + level / 2, static_cast<double>(open.replicates - 1)) * open.log_error;
-    row.lo = *row.measured * std::exp(-half);
-    row.hi = *row.measured * std::exp(half);
+    const Interval range = sample_variance_range(open.replicate, open.replicates, level);
+    row.lo = *row.measured / range.hi;
+    if (range.lo > 0) row.hi = *row.measured / range.lo;
     const double off = open.relative_error;
-    row.verdict = *row.lo <= *row.expected * (1 + off) && *row.expected * (1 - off) <= *row.hi ? "holds" : "violated";
+    const bool below = *row.expected * (1 + off) < *row.lo, above = row.hi && *row.expected * (1 - off) > *row.hi;
+    row.verdict = below || above ? "violated" : "holds";
   }
 
   const Plan& plan_;
   const Results& results_;
   std::span<const Reference> references_;
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<Cumulants>> rounds_;  ///< by scene and estimator
   std::vector<Open> open_;
 };
 

@@ -112,8 +112,9 @@ std::string theory_summary(const TheoryReport& report, std::span<const std::stri
   if (rows.size() > 1) text += align(rows, 2);
   for (const TheoryRow& row : report.rows) {
     if (row.verdict != "violated") continue;
-    text += fmt::format("  violated: {}, {}: measured {:.4g} [{:.4g}, {:.4g}], bound or predicted {:.4g}\n", row.check,
-                        to_string(row.cell), *row.measured, *row.lo, *row.hi, *row.expected);
+    const std::string hi = row.hi ? fmt::format("{:.4g}]", *row.hi) : "inf)";
+    text += fmt::format("  violated: {}, {}: measured {:.4g} [{:.4g}, {}, bound or predicted {:.4g}\n", row.check,
+                        to_string(row.cell), *row.measured, *row.lo, hi, *row.expected);
   }
   for (const std::string& check : checks) {
     if (std::ranges::find(report.rows, check, &TheoryRow::check) == report.rows.end())

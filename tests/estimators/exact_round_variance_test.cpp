@@ -13,7 +13,7 @@ namespace {
 
 double predicted(const std::string& scene, const std::string& estimator) {
   const auto source = make_analytic_scene(scene);
-  return exact_round_variance(parse_estimator(estimator, source->techniques()), *source->exact_densities()).value();
+  return exact_round_cumulants(parse_estimator(estimator, source->techniques()), *source->exact_densities()).value()[2];
 }
 
 struct Known {
@@ -89,7 +89,7 @@ TEST(ExactRoundVariance, AlignedPhongCaps) {
 TEST(ExactRoundVariance, ThereIsNoneOfProgressiveWeights) {
   const auto source = make_analytic_scene("mis-toy");
   const Estimator estimator = parse_estimator("optimal-progressive", source->techniques());
-  EXPECT_FALSE(exact_round_variance(estimator, *source->exact_densities()));
+  EXPECT_FALSE(exact_round_cumulants(estimator, *source->exact_densities()));
 }
 
 }  // namespace
