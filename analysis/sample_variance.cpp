@@ -39,7 +39,7 @@ SampleVarianceLaw sample_variance_law(const Cumulants& cumulants, std::int64_t r
 }
 
 bool has_sample_variance_range(const Cumulants& cumulants, std::int64_t replicates) {
-  const double limit = static_cast<double>(replicates) / 20, skewness = cumulants.skewness();
+  const double limit = static_cast<double>(replicates) / 40, skewness = cumulants.skewness();
   return cumulants[2] > 0 && cumulants.kurtosis() - 3 <= limit && skewness * skewness <= limit;
 }
 

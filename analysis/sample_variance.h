@@ -25,8 +25,8 @@ struct SampleVarianceLaw {
 };
 SampleVarianceLaw sample_variance_law(const Cumulants& cumulants, std::int64_t replicates);
 
-/// Whether sample_variance_range() can be trusted: K − 3 ≤ R/20 and skewness² ≤ R/20, of the law of the numbers. For
-/// R ≥ 40 the second adds little, K − 1 ≥ skewness²; with fewer it tells numbers that are normal from those that take
+/// Whether sample_variance_range() can be trusted: K − 3 ≤ R/40 and skewness² ≤ R/40, of the law of the numbers. For
+/// R ≥ 80 the second adds little, K − 1 ≥ skewness²; with fewer it tells numbers that are normal from those that take
 /// few values.
 bool has_sample_variance_range(const Cumulants& cumulants, std::int64_t replicates);
 
