@@ -38,9 +38,10 @@ bool has_sample_variance_range(const Cumulants& cumulants, std::int64_t replicat
 ///   upper end   of skewness max(2s, γ, τ)
 ///   lower end   of skewness min(2s, γ), and where γ < 0, −max(−γ, τ)
 ///
-/// the wider of those that come in question. Each end leaves out (1 − level)/4: measured on sums of gamma, uniform and
-/// two-valued numbers and of rare spikes, the two tails together have at most twice what the quantiles say, for levels
-/// up to 1 − 10⁻⁵ (LongSampleVariance in tests/analysis/sample_variance_test.cpp).
+/// the wider of those that come in question. Each end leaves out (1 − level)/4: where has_sample_variance_range()
+/// holds, the two tails together have at most twice what the quantiles say, for levels up to 1 − 10⁻⁵ (summed exactly
+/// over two-valued numbers and their sums, simulated of rare spikes and gamma numbers, in
+/// tests/analysis/sample_variance_test.cpp).
 Interval sample_variance_range(const Cumulants& cumulants, std::int64_t replicates, double level);
 
 }  // namespace halfslope

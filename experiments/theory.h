@@ -25,15 +25,17 @@ namespace halfslope {
 ///                       the parts are independent, so it is Σ_i V_i / n². With two techniques and as many samples of
 ///                       each the bound is the larger variance of the two alone at the same N
 ///   exact-variance      V = V_exact where the scene knows its densities (estimators/exact_variance.h); for `optimal`,
-///                       whose exact variance is a limit, from 1024 rounds on and give or take 3 %
+///                       whose exact variance is a limit, from 1024 rounds on and give or take 3 %. Where the exact
+///                       tails are too heavy for so many replicates it is not judged
 struct TheoryCheckInfo {
   std::string_view name, statement;
 };
 std::span<const TheoryCheckInfo> theory_checks();
 
 /// One comparison. `measured` is a difference of variances (balance-bound, one-sample-balance, average-bound) or a
-/// variance (exact-variance), [lo, hi] its interval, of Student's t over replicates jointly; for a variance on its log,
-/// by the kurtosis. All intervals of a run hold together with probability 99 % (Bonferroni).
+/// variance (exact-variance), [lo, hi] its interval: of Student's t over replicates jointly, or, for a variance, from
+/// the law that a sample variance has at the exact cumulants (analysis/sample_variance.h), without hi where that is
+/// infinite. All intervals of a run hold together with probability 99 % (Bonferroni).
 struct TheoryRow {
   CellName cell;
   std::string check;
