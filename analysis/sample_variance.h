@@ -25,9 +25,9 @@ struct SampleVarianceLaw {
 };
 SampleVarianceLaw sample_variance_law(const Cumulants& cumulants, std::int64_t replicates);
 
-/// Whether sample_variance_range() can be trusted: K − 3 ≤ R/40 and skewness² ≤ R/40, of the law of the numbers. For
-/// R ≥ 80 the second adds little, K − 1 ≥ skewness²; with fewer it tells numbers that are normal from those that take
-/// few values.
+/// Whether sample_variance_range() can be trusted: K − 3 ≤ R/40 and skewness² ≤ R/40, of the law of the numbers. Since
+/// K ≥ 1 + skewness², the second adds little where R is large; where it is small it tells numbers that are near normal
+/// from those that take few values.
 bool has_sample_variance_range(const Cumulants& cumulants, std::int64_t replicates);
 
 /// The range that V̂/V is in with probability `level` at least, for laws that have it: lo may be negative, as nothing
