@@ -14,8 +14,15 @@ constexpr std::int64_t kPilotReplicates = 256;
 constexpr double kPredictionError = 0.04;
 constexpr std::uint32_t kMainExperiment = 1, kPilot = 2;  // purposes of random numbers
 
-ErrorLaw two_point_errors() {
-  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }, {}};
+/// Nearly of one size. Errors of one size alone have no spread, and are not compared.
+ErrorLaw four_point_errors() {
+  return {"four-point",
+          1,
+          [](RunRandom& random) {
+            const double size = std::sqrt(random.uniform() < 0.5 ? 0.5 : 1.5);
+            return random.uniform() < 0.5 ? -size : size;
+          },
+          {}};
 }
 
 /// Squared errors, [cell][replicate].
@@ -133,9 +140,9 @@ std::vector<CoverageRow> measure_power(const ComparedFamily& family, std::int64_
 
 std::vector<CoverageRow> comparison_coverage(const CoverageRequest& request) {
   const ErrorLaw gaussian = gaussian_errors(), uniform = uniform_errors(), laplace = laplace_errors(),
-                 two_point = two_point_errors();
+                 four_point = four_point_errors();
   const std::vector<ErrorLaw> like = eleven(gaussian, {gaussian}),
-                              unlike = eleven(gaussian, {uniform, laplace, two_point});
+                              unlike = eleven(gaussian, {uniform, laplace, four_point});
   struct Part {
     ComparedFamily family;
     std::int64_t replicates;
@@ -144,9 +151,9 @@ std::vector<CoverageRow> comparison_coverage(const CoverageRequest& request) {
   };
   const Part parts[] = {
       {{"Gaussian", like}, 64, measure_alarms, 1},
-      {{"uniform, Laplace, two-point against Gaussian", unlike}, 64, measure_alarms, 1},
-      {{"Laplace against two-point", eleven(two_point, {laplace})}, 64, measure_alarms, 1},
-      {{"two-point against Laplace", eleven(laplace, {two_point})}, 64, measure_alarms, 1},
+      {{"uniform, Laplace, four-point against Gaussian", unlike}, 64, measure_alarms, 1},
+      {{"Laplace against four-point", eleven(four_point, {laplace})}, 64, measure_alarms, 1},
+      {{"four-point against Laplace", eleven(laplace, {four_point})}, 64, measure_alarms, 1},
       {{"unlike, on common samples", unlike, 0.9}, 64, measure_alarms, 1},
       {{"Gaussian", like, 0, 256}, 16, measure_alarms, 1},
       {{"unlike", unlike, 0, 256}, 16, measure_alarms, 1},

@@ -2,16 +2,24 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace halfslope {
 namespace {
 
-ErrorLaw two_point() {
-  return {"two-point", 1, [](RunRandom& random) { return random.uniform() < 0.5 ? -1.0 : 1.0; }, {}};
+ErrorLaw four_point() {
+  return {"four-point",
+          1,
+          [](RunRandom& random) {
+            const double size = std::sqrt(random.uniform() < 0.5 ? 0.5 : 1.5);
+            return random.uniform() < 0.5 ? -size : size;
+          },
+          {}};
 }
 
 ComparedFamily unlike(double shared, int pixels) {
   ComparedFamily family{"", {gaussian_errors()}, shared, pixels};
-  const ErrorLaw others[] = {uniform_errors(), laplace_errors(), two_point()};
+  const ErrorLaw others[] = {uniform_errors(), laplace_errors(), four_point()};
   for (std::size_t k = 0; k < 10; ++k) family.laws.push_back(others[k % 3]);
   return family;
 }
