@@ -232,7 +232,9 @@ ImageResults analyze_images(const ImageRequest& request) {
   }
   if (images.results.cells.empty()) {
     std::string named;
-    for (const ImageProblem& problem : images.problems) named += fmt::format("\n  {}: {}", problem.what, problem.text);
+    for (const auto* list : {&images.notes, &images.problems}) {
+      for (const ImageProblem& problem : *list) named += fmt::format("\n  {}: {}", problem.what, problem.text);
+    }
     fail(ExitCode::kBadInput, "no image could be measured:{}", named);
   }
   pair_replicates(images.results, images.cells);

@@ -148,6 +148,11 @@ TEST_F(AnalyzeImages, TheReferenceAmongTheImagesIsNotMeasuredAgainstItself) {
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_THAT(ended.err, HasSubstr("out/a/64_1.exr: is the reference, so not measured"));
   EXPECT_EQ(table("convergence.csv").size(), 4u);
+  write_flat("only/4.exr", 1);
+  const Ended itself = run_program({"analyze", "images", "--reference", path("only/4.exr"), "--pattern",
+                                    path("only/{samples}.exr"), "--out", path("none")});
+  EXPECT_EQ(itself.code, 3);
+  EXPECT_THAT(itself.err, HasSubstr("only/4.exr: is the reference, so not measured"));
   const Ended twice = run_program({"analyze", "images", "--reference-halves", path("ref.exr"), path("ref.exr"),
                                    "--pattern", path("out/{sampler}/{samples}_{seed}.exr"), "--out", path("tables")});
   EXPECT_EQ(twice.code, 3);
