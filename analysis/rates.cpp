@@ -250,9 +250,7 @@ constexpr const char* kTooFew = "too-few-points";
 
 }  // namespace
 
-bool is_certified(const RateFit& fit) {
-  return fit.interval && !has_mark(fit.status, "few-replicates") && !has_mark(fit.status, "heavy-tailed");
-}
+bool is_certified(const RateFit& fit) { return fit.interval && is_certified(fit.status); }
 
 LineRates analyse_rates(const RateData& data, std::uint64_t seed) {
   if (!has_line(data)) return {{{}, {}, 0, 0, kTooFew}, {}, {}};

@@ -32,6 +32,11 @@ inline bool has_mark(std::string_view status, std::string_view mark) {
   return false;
 }
 
+/// Whether the intervals of a row with this status, if it has any, are as sure as they say.
+inline bool is_certified(std::string_view status) {
+  return !has_mark(status, "few-replicates") && !has_mark(status, "heavy-tailed");
+}
+
 /// Fewer replicates than this, and intervals are not certified.
 inline constexpr int kCertifiedReplicates = 16;
 /// A reference whose variance is a larger share of the measured mean squared error than this limits the measurement.

@@ -19,9 +19,6 @@ constexpr double kReachOfRates = 0.3;  // beyond all local rates, for their inte
 enum class Diagram { kConvergence, kWorkPrecision, kRates };
 
 bool bent(const ConvergenceLine& line) { return has_mark(line.rate_status, "pre-asymptotic"); }
-bool untrusted(const ConvergenceLine& line) {
-  return has_mark(line.rate_status, "few-replicates") || has_mark(line.rate_status, "heavy-tailed");
-}
 
 std::vector<ChartPoint> points_of(const ConvergenceLine& line, Diagram diagram) {
   std::vector<ChartPoint> points;
@@ -43,9 +40,10 @@ std::vector<ChartPoint> points_of(const ConvergenceLine& line, Diagram diagram) 
 std::string note_of(const ConvergenceLine& line, const std::vector<ChartPoint>& points, Diagram diagram) {
   if (points.empty() && !line.status.empty()) return line.status;
   if (diagram == Diagram::kWorkPrecision) return "";
-  const std::string rate = line.rate ? slope_note(*line.rate, line.rate_interval, untrusted(line) ? kNotCertified : "",
-                                                  bent(line) ? kNotStraight : "")
-                                     : line.rate_status;
+  const std::string rate =
+      line.rate ? slope_note(*line.rate, line.rate_interval, is_certified(line.rate_status) ? "" : kNotCertified,
+                             bent(line) ? kNotStraight : "")
+                : line.rate_status;
   return diagram == Diagram::kRates && line.theory ? rate + ", " + slope_label(*line.theory) : rate;
 }
 

@@ -41,8 +41,7 @@ std::string theory_remark(const std::string& line, const RateResult& rate, doubl
     return "";
   return fmt::format(
       "{}: measured and theory disagree: over N = {} to {} the RMSE falls {} than theory's N^{} (logarithms aside), "
-      "with "
-      "a rate of {:.2f} [{:.3f}, {:.3f}]{}.\n",
+      "with a rate of {:.2f} [{:.3f}, {:.3f}]{}.\n",
       line, fit.samples_lo, fit.samples_hi, difference < 0 ? "more slowly" : "faster", *rate.theory, *fit.rate,
       fit.interval->lo, fit.interval->hi, has_mark(fit.status, "pre-asymptotic") ? ", and follows no line" : "");
 }

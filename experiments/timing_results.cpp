@@ -127,7 +127,7 @@ std::vector<TimingResult> timing_results(const Results& results, std::vector<Cel
     row.all = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns; });
     row.points = median_of(row.times.runs, [](const TimedRun& run) { return run.points_ns; });
     row.evaluation = median_of(row.times.runs, [](const TimedRun& run) { return run.all_ns - run.points_ns; });
-    row.certified = !has_mark(s.status, "few-replicates") && !has_mark(s.status, "heavy-tailed");
+    row.certified = is_certified(s.status);
     Status status;
     status.mark_if(s.status != "ok", s.status);
     status.mark_if(!row.covered(), "few-repetitions");
