@@ -163,8 +163,7 @@ int DirectLighting::region(int pixel) const {
   double best = -2;
   const auto& lights = emitters_.lights;
   for (std::size_t l = 0; l < lights.size(); ++l) {
-    const auto& shape = scene_.primitives[static_cast<std::size_t>(lights[l])].shape;
-    const Vec3 center = std::visit([](const auto& s) { return s.center; }, shape);
+    const Vec3 center = middle(scene_.primitives[static_cast<std::size_t>(lights[l])]);
     const double cosine = mirror.dot((center - seen.position).normalized());
     if (cosine > best) best = cosine, nearest = l;
   }

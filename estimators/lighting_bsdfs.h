@@ -191,7 +191,7 @@ inline void with_bsdf(const PixelData<T>& pixel, int channels, Run run) {
       return with_channels.template operator()<Diffuse>();
     case BsdfKind::kRoughConductor:
       return with_channels.template operator()<RoughConductor>();
-    case BsdfKind::kPhong:
+    default:  // a plain scene (scenes/scene.h) has these three
       return with_channels.template operator()<Phong>();
   }
 }

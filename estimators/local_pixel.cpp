@@ -32,8 +32,7 @@ Eigen::Matrix3d frame(const Vec3& n) {
 double length_scale(const Scene& scene, const Vec3& from) {
   double farthest = 0;
   for (const Primitive& primitive : scene.primitives) {
-    const Vec3 center = std::visit([](const auto& s) { return s.center; }, primitive.shape);
-    farthest = std::max(farthest, (center - from).stableNorm());
+    farthest = std::max(farthest, (middle(primitive) - from).stableNorm());
   }
   return farthest > 0 ? std::exp2(-std::ilogb(farthest)) : 1;
 }
@@ -91,18 +90,9 @@ void copy_bsdf(const Bsdf& bsdf, PixelData<T>& data) {
 
 Emitters find_emitters(const Scene& scene) {
   Emitters emitters;
-  double extent = 0;
-  for (const Primitive& p : scene.primitives) {
-    extent = std::max(extent, std::visit(
-                                  [](const auto& s) {
-                                    if constexpr (requires { s.radius; })
-                                      return s.radius;
-                                    else
-                                      return std::max(s.half_u.stableNorm(), s.half_v.stableNorm());
-                                  },
-                                  p.shape));
-  }
-  const double scale = extent > 0 ? std::exp2(-std::ilogb(extent)) : 1;
+  double longest = 0;
+  for (const Primitive& p : scene.primitives) longest = std::max(longest, extent(p));
+  const double scale = longest > 0 ? std::exp2(-std::ilogb(longest)) : 1;
   double total = 0;
   for (const Primitive& p : scene.primitives) total += area(p, scale);
   std::vector<std::uint64_t> words;

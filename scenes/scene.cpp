@@ -1,5 +1,6 @@
 #include "scenes/scene.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -95,14 +96,83 @@ Hit first_hit(const Scene& scene, const Ray& ray) {
   return hit;
 }
 
-double area(const Primitive& primitive, double scale) {
-  if (const auto* sphere = std::get_if<Sphere>(&primitive.shape)) {
-    const double radius = scale * sphere->radius;
-    return 4 * std::numbers::pi * radius * radius;
-  }
-  const auto& flat = std::get<Flat>(primitive.shape);
+namespace {
+
+double area_of(const Sphere& sphere, double scale) {
+  const double radius = scale * sphere.radius;
+  return 4 * std::numbers::pi * radius * radius;
+}
+
+double area_of(const Flat& flat, double scale) {
   const double square = (scale * flat.half_u).norm() * (scale * flat.half_v).norm();
   return (flat.outline == Flat::Outline::kDisk ? std::numbers::pi : 4) * square;
+}
+
+double area_of(const Cylinder& cylinder, double scale) {
+  return 2 * std::numbers::pi * (scale * cylinder.radius) * (scale * (cylinder.p1 - cylinder.p0)).norm();
+}
+
+double area_of(const std::shared_ptr<const Mesh>& mesh, double scale) {
+  double sum = 0;
+  for (const auto& triangle : mesh->triangles) {
+    const auto corner = [&](int i) -> Vec3 {
+      return scale * Eigen::Vector3f(mesh->positions[triangle[static_cast<std::size_t>(i)]].data()).cast<double>();
+    };
+    sum += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+  }
+  return sum;
+}
+
+}  // namespace
+
+double area(const Primitive& primitive, double scale) {
+  return std::visit([&](const auto& shape) { return area_of(shape, scale); }, primitive.shape);
+}
+
+namespace {
+
+Vec3 middle_of(const Cylinder& cylinder) { return 0.5 * (cylinder.p0 + cylinder.p1); }
+
+Eigen::AlignedBox3d box_of(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Mesh::Point& p : mesh.positions) box.extend(Eigen::Vector3f(p.data()).cast<double>());
+  return box;
+}
+
+Vec3 middle_of(const std::shared_ptr<const Mesh>& mesh) { return box_of(*mesh).center(); }
+
+template <class Shape>
+Vec3 middle_of(const Shape& shape) {
+  return shape.center;
+}
+
+double extent_of(const Sphere& sphere) { return sphere.radius; }
+double extent_of(const Flat& flat) { return std::max(flat.half_u.stableNorm(), flat.half_v.stableNorm()); }
+double extent_of(const Cylinder& cylinder) {
+  return std::max(cylinder.radius, (cylinder.p1 - cylinder.p0).stableNorm());
+}
+double extent_of(const std::shared_ptr<const Mesh>& mesh) { return box_of(*mesh).diagonal().stableNorm(); }
+
+}  // namespace
+
+double extent(const Primitive& primitive) {
+  return std::visit([](const auto& shape) { return extent_of(shape); }, primitive.shape);
+}
+
+Vec3 middle(const Primitive& primitive) {
+  return std::visit([](const auto& shape) { return middle_of(shape); }, primitive.shape);
+}
+
+bool is_plain(const Scene& scene) {
+  if (!scene.delta_lights.empty() || scene.environment) return false;
+  return std::all_of(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& primitive) {
+    const Bsdf& bsdf = primitive.bsdf;
+    if (!std::holds_alternative<Sphere>(primitive.shape) && !std::holds_alternative<Flat>(primitive.shape))
+      return false;
+    if (primitive.back || bsdf.textured() || bsdf.opacity != 1) return false;
+    if (bsdf.kind == BsdfKind::kRoughConductor) return bsdf.distribution == Distribution::kGgx && !bsdf.alpha_v;
+    return bsdf.kind == BsdfKind::kDiffuse || bsdf.kind == BsdfKind::kPhong;
+  });
 }
 
 Vec3 leave_surface(const Primitive& primitive, const Hit& hit) {
@@ -119,20 +189,80 @@ Vec3 leave_surface(const Primitive& primitive, const Hit& hit) {
 }
 
 bool is_black(const Bsdf& bsdf) {
-  return (bsdf.reflectance == 0).all() && (bsdf.kind != BsdfKind::kPhong || (bsdf.specular == 0).all());
+  const bool no_reflectance = (bsdf.reflectance == 0).all(), no_specular = (bsdf.specular == 0).all();
+  if (bsdf.opacity != 1 || bsdf.opacity_texture) return false;
+  switch (bsdf.kind) {
+    case BsdfKind::kDiffuse:
+    case BsdfKind::kConductor:
+    case BsdfKind::kRoughConductor:
+      return no_reflectance;
+    case BsdfKind::kPhong:
+    case BsdfKind::kPlastic:
+    case BsdfKind::kRoughPlastic:
+      return no_reflectance && no_specular;
+    case BsdfKind::kDielectric:
+    case BsdfKind::kRoughDielectric:
+      return no_specular && (bsdf.transmittance == 0).all();
+  }
+  return false;
+}
+
+namespace {
+
+bool grey(const Rgb& colour) { return colour[0] == colour[1] && colour[1] == colour[2]; }
+
+bool grey(const std::shared_ptr<const Texture>& texture) {
+  if (!texture) return true;
+  if (texture->kind == Texture::Kind::kCheckerboard) return grey(texture->color0) && grey(texture->color1);
+  return is_grey(*texture->bitmap);
+}
+
+bool grey(const Bsdf& bsdf) {
+  if (!grey(bsdf.reflectance_texture) || !grey(bsdf.specular_texture) || !grey(bsdf.transmittance_texture))
+    return false;
+  switch (bsdf.kind) {
+    case BsdfKind::kDiffuse:
+      return grey(bsdf.reflectance);
+    case BsdfKind::kConductor:
+    case BsdfKind::kRoughConductor:
+      return grey(bsdf.reflectance) && (bsdf.unit_fresnel || (grey(bsdf.eta) && grey(bsdf.k)));
+    case BsdfKind::kPhong:
+    case BsdfKind::kPlastic:
+    case BsdfKind::kRoughPlastic:
+      return grey(bsdf.reflectance) && grey(bsdf.specular);
+    case BsdfKind::kDielectric:
+    case BsdfKind::kRoughDielectric:
+      return grey(bsdf.specular) && grey(bsdf.transmittance);
+  }
+  return false;
+}
+
+bool grey(const PointLight& light) { return grey(light.intensity); }
+bool grey(const DirectionalLight& light) { return grey(light.irradiance); }
+bool grey(const SpotLight& light) { return grey(light.intensity); }
+bool grey(const Environment& environment) {
+  return environment.map ? is_grey(*environment.map) : grey(environment.radiance);
+}
+
+}  // namespace
+
+bool is_grey(const Bitmap& bitmap) {
+  for (std::size_t i = 0; i + 2 < bitmap.rgb.size(); i += 3) {
+    if (bitmap.rgb[i] != bitmap.rgb[i + 1] || bitmap.rgb[i] != bitmap.rgb[i + 2]) return false;
+  }
+  return true;
 }
 
 bool is_grey(const Scene& scene) {
-  const auto grey = [](const Rgb& colour) { return colour[0] == colour[1] && colour[1] == colour[2]; };
-  for (const Primitive& primitive : scene.primitives) {
-    const Bsdf& bsdf = primitive.bsdf;
-    if (primitive.emits && !grey(primitive.radiance)) return false;
-    if (!grey(bsdf.reflectance)) return false;
-    if (bsdf.kind == BsdfKind::kPhong && !grey(bsdf.specular)) return false;
-    const bool has_index = bsdf.kind == BsdfKind::kRoughConductor && !bsdf.unit_fresnel;
-    if (has_index && !(grey(bsdf.eta) && grey(bsdf.k))) return false;
+  const auto is = [](const auto& light) { return grey(light); };
+  for (const DeltaLight& light : scene.delta_lights) {
+    if (!std::visit(is, light)) return false;
   }
-  return true;
+  if (scene.environment && !grey(*scene.environment)) return false;
+  return std::all_of(scene.primitives.begin(), scene.primitives.end(), [](const Primitive& primitive) {
+    if (primitive.emits && !grey(primitive.radiance)) return false;
+    return grey(primitive.bsdf) && (!primitive.back || grey(*primitive.back));
+  });
 }
 
 }  // namespace halfslope

@@ -3,16 +3,18 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "scenes/bsdf_kind.h"
+#include "scenes/bsdf.h"
+#include "scenes/emitters.h"
+#include "scenes/mesh.h"
+#include "scenes/sensor.h"
 
 namespace halfslope {
-
-using Vec3 = Eigen::Vector3d;
-using Rgb = Eigen::Array3d;
 
 /// A sphere; its outside is its front unless `flip_normals`.
 struct Sphere {
@@ -29,48 +31,31 @@ struct Flat {
   Outline outline = Outline::kRectangle;
 };
 
-/// Reflection at a surface, one-sided: it reflects only where both directions are on the front.
-struct Bsdf {
-  BsdfKind kind = BsdfKind::kDiffuse;
-  Rgb reflectance = Rgb::Constant(0.5);    ///< diffuse albedo, or the conductor's specular_reflectance
-  double alpha = 0.1;                      ///< GGX roughness, isotropic, in (0, 1]
-  Rgb specular = Rgb::Zero();              ///< of the Phong lobe; `reflectance` is then the diffuse part
-  double exponent = 30;                    ///< of the Phong lobe, ≥ 0
-  bool unit_fresnel = true;                ///< material "none": F = 1
-  Rgb eta = Rgb::Zero(), k = Rgb::Zero();  ///< complex index of refraction per channel, where F is not 1
+/// The side of a cylinder around the segment from p0 to p1; its outside is its front unless `flip_normals`. Open at
+/// both ends.
+struct Cylinder {
+  Vec3 p0 = Vec3::Zero(), p1 = Vec3::UnitZ();
+  double radius = 1;
+  bool flip_normals = false;
 };
 
 struct Primitive {
-  std::variant<Sphere, Flat> shape;
-  Bsdf bsdf;
+  std::variant<Sphere, Flat, Cylinder, std::shared_ptr<const Mesh>> shape;
+  Bsdf bsdf;  ///< of the front; of a dielectric, both sides
   bool emits = false;
-  Rgb radiance = Rgb::Zero();  ///< emitted from the front, where `emits`
-  std::string id;              ///< the file's id, or "shape<k>" by position, from 1
-};
-
-struct Ray {
-  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitZ();  ///< direction is unit length
-};
-
-/// perspective: a pinhole camera, one ray through the centre of each pixel. radiancemeter and mradiancemeter: rays
-/// given one by one, each a pixel of a 1 × n image.
-struct Sensor {
-  enum class Kind : std::uint8_t { kPerspective, kRays } kind = Kind::kPerspective;
-  Vec3 origin = Vec3::Zero();
-  Vec3 left = Vec3::UnitX(), up = Vec3::UnitY(), forward = Vec3::UnitZ();  ///< orthonormal; left is the image's left
-  double fov_degrees = 45;
-  enum class FovAxis : std::uint8_t { kX, kY, kDiagonal, kSmaller, kLarger } fov_axis = FovAxis::kX;
-  std::vector<Ray> rays;  ///< where kind is kRays
-  int width = 768, height = 576;
-
-  /// The ray of pixel (x, y) of a width × height image; y grows downwards. For kRays, y is 0 and x the ray's index.
-  Ray ray(int x, int y, int image_width, int image_height) const;
+  Rgb radiance = Rgb::Zero();     ///< emitted from the front, where `emits`
+  std::string id;                 ///< the file's id, or "shape<k>" by position, from 1
+  std::optional<Bsdf> back = {};  ///< of a two-sided surface's back, seen from there as if it were a front
 };
 
 struct Scene {
   std::string name;
   std::vector<Primitive> primitives;
+  std::vector<DeltaLight> delta_lights;
+  std::optional<Environment> environment;
   Sensor sensor;
+  std::optional<int> max_depth;  ///< of the file's path integrator, in Mitsuba's count: 1 sees emitters only
+  std::optional<int> rr_depth;   ///< likewise: Russian roulette from this depth on
 };
 
 /// Where a ray first meets the scene.
@@ -81,8 +66,13 @@ struct Hit {
   bool front = false;                                    ///< whether the ray met the front
 };
 
-/// The nearest intersection with distance > 0, in double precision by the stable forms (the sphere's discriminant from
-/// the closest approach; the hit point projected back onto the shape).
+/// Whether every surface is a sphere, rectangle or disk, one-sided, untextured and of kind kDiffuse, kRoughConductor
+/// (isotropic GGX) or kPhong, and every light a surface: what the functions below and direct lighting's own kernels are
+/// made for.
+bool is_plain(const Scene& scene);
+
+/// Of a plain scene: the nearest intersection with distance > 0, in double precision by the stable forms (the sphere's
+/// discriminant from the closest approach; the hit point projected back onto the shape).
 Hit first_hit(const Scene& scene, const Ray& ray);
 
 /// Where a ray that goes on from `hit`, on the side it came from, may start: the hit point moved along the normal by 16
@@ -90,11 +80,15 @@ Hit first_hit(const Scene& scene, const Ray& ray);
 /// lies (a fixed offset would be lost there, or show elsewhere).
 Vec3 leave_surface(const Primitive& primitive, const Hit& hit);
 
-/// Of one side, with every length multiplied by `scale` first: the squares of the file's may leave binary64.
+/// Of one side of a sphere, rectangle, disk, cylinder or mesh, with every length multiplied by `scale` first: the
+/// squares of the file's may leave binary64.
 double area(const Primitive& primitive, double scale = 1);
 
-/// Whether nothing is reflected.
-bool is_black(const Bsdf& bsdf);
+/// The middle of a shape; of a mesh, of its bounding box.
+Vec3 middle(const Primitive& primitive);
+
+/// The largest length that makes it: a radius, a half axis, a cylinder's length, the diagonal of a mesh's box.
+double extent(const Primitive& primitive);
 
 /// Whether two channels can ever differ: any colour in a radiance, reflectance, eta or k.
 bool is_grey(const Scene& scene);
