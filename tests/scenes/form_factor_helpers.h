@@ -35,8 +35,11 @@ inline Sphere sphere(const Vec3& center, double radius, bool flip_normals = fals
 
 inline std::optional<double> factor(std::variant<Sphere, Flat> shape, const Vec3& position = Vec3::Zero(),
                                     const Vec3& normal = kUp) {
-  return form_factor({.shape = shape, .bsdf = {}, .emits = true, .radiance = Rgb::Ones(), .id = "light"}, position,
-                     normal);
+  Primitive light;
+  std::visit([&](const auto& s) { light.shape = s; }, shape);
+  light.emits = true;
+  light.radiance = Rgb::Ones();
+  return form_factor(light, position, normal);
 }
 
 inline void close(double found, double exact, double relative) {
