@@ -39,8 +39,10 @@ struct Cylinder {
   bool flip_normals = false;
 };
 
+using Shape = std::variant<Sphere, Flat, Cylinder, std::shared_ptr<const Mesh>>;
+
 struct Primitive {
-  std::variant<Sphere, Flat, Cylinder, std::shared_ptr<const Mesh>> shape;
+  Shape shape;
   Bsdf bsdf;  ///< of the front; of a dielectric, both sides
   bool emits = false;
   Rgb radiance = Rgb::Zero();     ///< emitted from the front, where `emits`

@@ -33,10 +33,9 @@ inline Sphere sphere(const Vec3& center, double radius, bool flip_normals = fals
   return {center, radius, flip_normals};
 }
 
-inline std::optional<double> factor(std::variant<Sphere, Flat> shape, const Vec3& position = Vec3::Zero(),
-                                    const Vec3& normal = kUp) {
+inline std::optional<double> factor(const Shape& shape, const Vec3& position = Vec3::Zero(), const Vec3& normal = kUp) {
   Primitive light;
-  std::visit([&](const auto& s) { light.shape = s; }, shape);
+  light.shape = shape;
   light.emits = true;
   light.radiance = Rgb::Ones();
   return form_factor(light, position, normal);

@@ -14,7 +14,7 @@ void expect_vector(const Vec3& found, const Vec3& expected, double tolerance = 1
   EXPECT_LE((found - expected).norm(), tolerance) << found.transpose() << " is not " << expected.transpose();
 }
 
-Scene scene_of(std::variant<Sphere, Flat> shape) {
+Scene scene_of(const Shape& shape) {
   Scene scene;
   scene.primitives.push_back({.shape = shape, .bsdf = {}, .emits = false, .radiance = Rgb::Zero(), .id = "shape1"});
   return scene;
