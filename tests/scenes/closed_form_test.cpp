@@ -173,17 +173,17 @@ TEST(FormFactor, SidesThatDoNotEmitGiveNothing) {
 }
 
 TEST(FormFactor, NoTurnOrMoveChangesIt) {
-  const std::array<std::variant<Sphere, Flat>, 5> lights = {
-      rectangle({0.4, -0.7, 1.5}, {1, 0.2, 0.3}, {-0.06, 0.6, -0.2}),
-      rectangle({1, 0.5, 0.3}, {0, 2, 0}, {0.4, 0, 0.9}), disk({0.4, -0.7, 1.5}, {1, 0.2, 0.3}, {-0.06, 0.6, -0.2}),
-      sphere({1, 2, 3}, 1), sphere({1, 2, 0.3}, 1)};
+  const std::array<Shape, 5> lights = {rectangle({0.4, -0.7, 1.5}, {1, 0.2, 0.3}, {-0.06, 0.6, -0.2}),
+                                       rectangle({1, 0.5, 0.3}, {0, 2, 0}, {0.4, 0, 0.9}),
+                                       disk({0.4, -0.7, 1.5}, {1, 0.2, 0.3}, {-0.06, 0.6, -0.2}), sphere({1, 2, 3}, 1),
+                                       sphere({1, 2, 0.3}, 1)};
   const Vec3 move(3, -1, 2);
   for (const auto& light : lights) {
     const double at_home = *factor(light);
     for (int i = 1; i <= 6; ++i) {
       const Eigen::Matrix3d turn =
           Eigen::AngleAxisd(1.1 * i, Vec3(0.3 * i, 1, 0.7 - 0.2 * i).normalized()).toRotationMatrix();
-      std::variant<Sphere, Flat> moved = light;
+      Shape moved = light;
       if (auto* round = std::get_if<Sphere>(&moved)) {
         round->center = turn * round->center + move;
       } else {
