@@ -7,48 +7,9 @@
 #include <numbers>
 
 #include "core/assertion.h"
-#include "scenes/intersection.h"
+#include "scenes/shape_hits.h"
 
 namespace halfslope {
-namespace {
-
-constexpr double kNoHit = std::numeric_limits<double>::infinity();
-
-Vec<double> plain(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-/// The smallest t > 0 with |o + t d − c| = R, or kNoHit. The root of the smaller magnitude is the product of both over
-/// the other.
-double hit_sphere(const Sphere& sphere, const Ray& ray) {
-  const Vec3 from_center = ray.origin - sphere.center;
-  const double b = from_center.dot(ray.direction);
-  const double discriminant = half_chord_squared(plain(from_center), plain(ray.direction), b, sphere.radius);
-  if (!(discriminant >= 0)) return kNoHit;
-  const double half_chord = std::sqrt(discriminant), distance = from_center.norm();
-  const double product = (distance - sphere.radius) * (distance + sphere.radius);
-  const double q = b < 0 ? -b + half_chord : -b - half_chord;
-  const double other = q != 0 ? product / q : 0;
-  const double near = std::min(q, other), far = std::max(q, other);
-  return near > 0 ? near : far > 0 ? far : kNoHit;
-}
-
-struct PlanePoint {
-  double distance, a, b;  ///< center + a·half_u + b·half_v
-};
-
-PlanePoint hit_flat(const Flat& flat, const Ray& ray) {
-  const Vec3 to_center = flat.center - ray.origin;
-  const double t = flat.normal.dot(to_center) / flat.normal.dot(ray.direction);
-  if (!(t > 0) || !std::isfinite(t)) return {kNoHit, 0, 0};
-  const Vec3 local = t * ray.direction - to_center;
-  const double a = local.dot(flat.half_u) / flat.half_u.squaredNorm();
-  const double b = local.dot(flat.half_v) / flat.half_v.squaredNorm();
-  const bool disk = flat.outline == Flat::Outline::kDisk;
-  const bool inside = disk ? a * a + b * b <= 1 : std::abs(a) <= 1 && std::abs(b) <= 1;
-  return {inside ? t : kNoHit, a, b};
-}
-
-}  // namespace
-
 Ray Sensor::ray(int x, int y, int image_width, int image_height) const {
   if (kind == Kind::kRays) {
     assert_equal(y, 0, "row of a sensor whose rays are given one by one");

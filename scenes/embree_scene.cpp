@@ -1,0 +1,297 @@
+#include "scenes/embree_scene.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/kernel_library.h"
+#include "scenes/shape_hits.h"
+
+namespace halfslope {
+namespace {
+
+static_assert(RayPacket::kLanes == 16 && offsetof(RayPacket, active) == sizeof(RTCRayHit16));
+static_assert(offsetof(RayPacket, tnear) == offsetof(RTCRayHit16, ray.tnear));
+static_assert(offsetof(RayPacket, dz) == offsetof(RTCRayHit16, ray.dir_z));
+static_assert(offsetof(RayPacket, tfar) == offsetof(RTCRayHit16, ray.tfar));
+static_assert(offsetof(RayPacket, mask) == offsetof(RTCRayHit16, ray.mask));
+static_assert(offsetof(RayPacket, u) == offsetof(RTCRayHit16, hit.u));
+static_assert(offsetof(RayPacket, triangle) == offsetof(RTCRayHit16, hit.primID));
+static_assert(offsetof(RayPacket, primitive) == offsetof(RTCRayHit16, hit.geomID));
+
+/// Embree leaves out what lies beyond 1.8e18, without a word.
+constexpr double kReach = 1e18;
+
+const char* device_configuration() {
+  // One thread builds the same hierarchy whatever the machine has.
+  return active_isa() == Isa::kBaseline ? "isa=sse2,threads=1,set_affinity=0" : "isa=avx2,threads=1,set_affinity=0";
+}
+
+struct Box {
+  Vec3 lower, upper;
+};
+
+Box box_of(const Sphere& sphere) {
+  const Vec3 half = Vec3::Constant(sphere.radius);
+  return {sphere.center - half, sphere.center + half};
+}
+
+Box box_of(const Flat& flat) {
+  Vec3 half = flat.half_u.cwiseAbs() + flat.half_v.cwiseAbs();
+  if (flat.outline == Flat::Outline::kDisk) half = (flat.half_u.cwiseAbs2() + flat.half_v.cwiseAbs2()).cwiseSqrt();
+  return {flat.center - half, flat.center + half};
+}
+
+Box box_of(const Cylinder& cylinder) {
+  const Vec3 axis = (cylinder.p1 - cylinder.p0).normalized();
+  const Vec3 half = cylinder.radius * (Vec3::Ones() - axis.cwiseAbs2()).cwiseMax(0).cwiseSqrt();
+  return {cylinder.p0.cwiseMin(cylinder.p1) - half, cylinder.p0.cwiseMax(cylinder.p1) + half};
+}
+
+double hit(const Sphere& sphere, const Ray& ray, double t_min) { return hit_sphere(sphere, ray, t_min); }
+double hit(const Flat& flat, const Ray& ray, double t_min) { return hit_flat(flat, ray, t_min).distance; }
+double hit(const Cylinder& cylinder, const Ray& ray, double t_min) { return hit_cylinder(cylinder, ray, t_min); }
+
+/// The distance at which lane i of n rays meets a shape, in lengths of its direction.
+template <class Shape>
+double hit_lane(const Shape& shape, RTCRayN* rays, unsigned n, unsigned i) {
+  const Vec3 direction(RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i));
+  const double length = direction.norm();
+  const Ray ray{{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)}, direction / length};
+  return hit(shape, ray, RTCRayN_tnear(rays, n, i) * length) / length;
+}
+
+template <class Shape>
+void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
+  const Box box = box_of(*static_cast<const Shape*>(arguments->geometryUserPtr));
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto down = [](double x) { return std::nextafter(static_cast<float>(x), -kInfinity); };
+  const auto up = [](double x) { return std::nextafter(static_cast<float>(x), kInfinity); };
+  *arguments->bounds_o = {down(box.lower.x()), down(box.lower.y()), down(box.lower.z()), 0,
+                          up(box.upper.x()),   up(box.upper.y()),   up(box.upper.z()),   0};
+}
+
+template <class Shape>
+void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
+  const unsigned n = arguments->N;
+  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, n);
+  RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, n);
+  for (unsigned i = 0; i < n; ++i) {
+    if (!arguments->valid[i]) continue;
+    const auto t = static_cast<float>(hit_lane(*static_cast<const Shape*>(arguments->geometryUserPtr), rays, n, i));
+    if (!(t < RTCRayN_tfar(rays, n, i))) continue;
+    RTCRayN_tfar(rays, n, i) = t;
+    RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
+    RTCHitN_primID(hits, n, i) = 0;
+    RTCHitN_geomID(hits, n, i) = arguments->geomID;
+  }
+}
+
+template <class Shape>
+void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
+  const unsigned n = arguments->N;
+  for (unsigned i = 0; i < n; ++i) {
+    if (!arguments->valid[i]) continue;
+    const auto t =
+        static_cast<float>(hit_lane(*static_cast<const Shape*>(arguments->geometryUserPtr), arguments->ray, n, i));
+    if (t < RTCRayN_tfar(arguments->ray, n, i))
+      RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
+  }
+}
+
+}  // namespace
+
+struct EmbreeScene::Impl {
+  /// A mesh's buffers, which are Embree's; null for other shapes.
+  struct Corners {
+    const float* positions = nullptr;
+    const std::uint32_t* triangles = nullptr;
+
+    Vec3 operator()(std::size_t triangle, std::size_t k) const {
+      const float* p = positions + std::size_t{3} * triangles[3 * triangle + k];
+      return {p[0], p[1], p[2]};
+    }
+  };
+
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<decltype(Primitive::shape)> shapes;  ///< meshes are empty here
+  std::vector<Corners> corners;
+  std::string error;
+  float extent = 0;  ///< the longest side of the scene's box
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  static void on_error(void* impl, RTCError, const char* text) {
+    auto& error = static_cast<Impl*>(impl)->error;
+    if (error.empty()) error = text && *text ? text : "no reason given";
+  }
+
+  void check(std::string_view what) const {
+    if (!error.empty()) fail(ExitCode::kBadInput, "Embree, {}: {}", what, error);
+  }
+
+  void add(const std::shared_ptr<const Mesh>& mesh, unsigned id);
+  template <class Shape>
+  void add(const Shape& shape, unsigned id);
+  void attach(RTCGeometry geometry, unsigned id) {
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+  }
+  std::optional<TrianglePoint> meet(std::size_t primitive, std::size_t triangle, const Ray& ray) const {
+    const Corners& of = corners[primitive];
+    if (!of.positions) return std::nullopt;
+    return meet_triangle(of(triangle, 0), of(triangle, 1), of(triangle, 2), ray);
+  }
+};
+
+void EmbreeScene::Impl::add(const std::shared_ptr<const Mesh>& mesh, unsigned id) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  const auto buffer = [&](RTCBufferType type, RTCFormat format, const auto& values) {
+    void* memory = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(values[0]), values.size());
+    check("a mesh");
+    std::memcpy(memory, values.data(), values.size() * sizeof(values[0]));
+    return memory;
+  };
+  corners[id].positions = static_cast<const float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh->positions));
+  corners[id].triangles =
+      static_cast<const std::uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles));
+  attach(geometry, id);
+}
+
+template <class Shape>
+void EmbreeScene::Impl::add(const Shape& shape, unsigned id) {
+  shapes[id] = shape;
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, 1);
+  rtcSetGeometryUserData(geometry, &std::get<Shape>(shapes[id]));
+  rtcSetGeometryBoundsFunction(geometry, bounds_callback<Shape>, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect_callback<Shape>);
+  rtcSetGeometryOccludedFunction(geometry, occluded_callback<Shape>);
+  attach(geometry, id);
+}
+
+EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+  for (const Primitive& primitive : scene.primitives) {
+    const double reach = middle(primitive).cwiseAbs().maxCoeff() + extent(primitive);
+    if (!(reach < kReach))
+      fail(ExitCode::kBadInput, "shape '{}' reaches {} from the origin, allowed: less than {}", primitive.id, reach,
+           kReach);
+  }
+  impl_->device = rtcNewDevice(device_configuration());
+  if (!impl_->device)
+    fail(ExitCode::kBadInput, "Embree, a device: error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
+  rtcSetDeviceErrorFunction(impl_->device, Impl::on_error, impl_.get());
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  impl_->shapes.resize(scene.primitives.size());
+  impl_->corners.resize(scene.primitives.size());
+  for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
+    std::visit([&](const auto& shape) { impl_->add(shape, static_cast<unsigned>(i)); }, scene.primitives[i].shape);
+  }
+  rtcCommitScene(impl_->scene);
+  impl_->check("a scene");
+  RTCBounds box;
+  rtcGetSceneBounds(impl_->scene, &box);
+  impl_->extent = std::max({box.upper_x - box.lower_x, box.upper_y - box.lower_y, box.upper_z - box.lower_z});
+}
+
+EmbreeScene::~EmbreeScene() = default;
+
+namespace {
+
+/// Whether the active rays go much the same way from much the same place: Embree then takes them through the hierarchy
+/// together, which is faster by half, and slower by as much where it is not so. Results do not depend on it.
+bool goes_together(const RayPacket& packet, float extent) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto spread = [&](const float* values) {
+    float low = kInfinity, high = -kInfinity;
+    for (int i = 0; i < RayPacket::kLanes; ++i) {
+      low = std::min(low, packet.active[i] ? values[i] : kInfinity);
+      high = std::max(high, packet.active[i] ? values[i] : -kInfinity);
+    }
+    return high - low;
+  };
+  return std::max({spread(packet.dx), spread(packet.dy), spread(packet.dz)}) < 0.05F &&
+         std::max({spread(packet.ox), spread(packet.oy), spread(packet.oz)}) < 0.02F * extent;
+}
+
+}  // namespace
+
+void EmbreeScene::first(RayPacket& packet) const {
+  for (int i = 0; i < RayPacket::kLanes; ++i) {
+    packet.time[i] = 0;
+    packet.mask[i] = ~std::uint32_t{0};
+    packet.flags[i] = 0;
+    packet.primitive[i] = -1;
+    packet.triangle[i] = 0;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
+  for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+    if (!packet.active[i] || packet.primitive[i] < 0) continue;
+    const Ray ray{{packet.ox[i], packet.oy[i], packet.oz[i]}, {packet.dx[i], packet.dy[i], packet.dz[i]}};
+    const auto point =
+        impl_->meet(static_cast<std::size_t>(packet.primitive[i]), static_cast<std::size_t>(packet.triangle[i]), ray);
+    if (!point || !(point->distance > 0 && std::isfinite(point->distance))) continue;
+    packet.tfar[i] = static_cast<float>(point->distance);
+    packet.u[i] = static_cast<float>(point->u);
+    packet.v[i] = static_cast<float>(point->v);
+  }
+}
+
+void EmbreeScene::occluded(RayPacket& packet) const {
+  for (int i = 0; i < RayPacket::kLanes; ++i) {
+    packet.time[i] = 0;
+    packet.mask[i] = ~std::uint32_t{0};
+    packet.flags[i] = 0;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+}
+
+void EmbreeScene::first_of(const void* scene, RayPacket* packet) {
+  static_cast<const EmbreeScene*>(scene)->first(*packet);
+}
+
+void EmbreeScene::occluded_of(const void* scene, RayPacket* packet) {
+  static_cast<const EmbreeScene*>(scene)->occluded(*packet);
+}
+
+EmbreeScene::Found EmbreeScene::first(const Ray& ray) const {
+  RTCRayHit hit = {};
+  const auto set = [](float& x, float& y, float& z, const Vec3& v) {
+    x = static_cast<float>(v.x());
+    y = static_cast<float>(v.y());
+    z = static_cast<float>(v.z());
+  };
+  set(hit.ray.org_x, hit.ray.org_y, hit.ray.org_z, ray.origin);
+  set(hit.ray.dir_x, hit.ray.dir_y, hit.ray.dir_z, ray.direction);
+  hit.ray.tfar = std::numeric_limits<float>::infinity();
+  hit.ray.mask = ~std::uint32_t{0};
+  hit.hit.geomID = hit.hit.primID = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(impl_->scene, &context, &hit);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {static_cast<std::int32_t>(hit.hit.geomID), static_cast<std::int32_t>(hit.hit.primID),
+          static_cast<double>(hit.ray.tfar), static_cast<double>(hit.hit.u), static_cast<double>(hit.hit.v)};
+}
+
+}  // namespace halfslope
