@@ -21,10 +21,14 @@ struct Sphere {
   Vec3 center = Vec3::Zero();
   double radius = 1;
   bool flip_normals = false;
+  /// A rotation: (x, y, z) = from_world · (p − center)/radius has u = φ/(2π), φ = atan2(y, x) in [0, 2π), and v = θ/π,
+  /// θ = acos z.
+  Eigen::Matrix3d from_world = Eigen::Matrix3d::Identity();
 };
 
 /// A flat shape { center + a·half_u + b·half_v } with half_u ⟂ half_v: of all a, b ∈ [−1, 1], a rectangle; of those
 /// with a² + b² ≤ 1, a disk (an ellipse where the half axes differ). `normal` is unit length and points to the front.
+/// The rectangle has u = (a + 1)/2, v = (b + 1)/2; the disk u = √(a² + b²), v = φ/(2π), φ = atan2(b, a) in [0, 2π).
 struct Flat {
   enum class Outline : std::uint8_t { kRectangle, kDisk };
   Vec3 center = Vec3::Zero(), half_u = Vec3::UnitX(), half_v = Vec3::UnitY(), normal = Vec3::UnitZ();
@@ -32,11 +36,13 @@ struct Flat {
 };
 
 /// The side of a cylinder around the segment from p0 to p1; its outside is its front unless `flip_normals`. Open at
-/// both ends.
+/// both ends. u is the angle around the axis over 2π, counted from `start` (which need not be perpendicular to it) by
+/// the right hand; v goes from 0 at p0 to 1 at p1.
 struct Cylinder {
   Vec3 p0 = Vec3::Zero(), p1 = Vec3::UnitZ();
   double radius = 1;
   bool flip_normals = false;
+  Vec3 start = Vec3::UnitX();
 };
 
 using Shape = std::variant<Sphere, Flat, Cylinder, std::shared_ptr<const Mesh>>;

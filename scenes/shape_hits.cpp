@@ -105,4 +105,9 @@ TrianglePoint meet_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, cons
   return {normal.dot(p0 - ray.origin) / normal.dot(ray.direction), u, v};
 }
 
+Vec3 first_tangent(const Vec3& n) {
+  const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
+  return {1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()};
+}
+
 }  // namespace halfslope

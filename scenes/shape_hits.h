@@ -36,6 +36,10 @@ TrianglePoint hit_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const
 /// triangle, and nothing else is asked.
 TrianglePoint meet_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Ray& ray);
 
+/// A unit vector perpendicular to the unit vector n, Mitsuba's first: where the u of a cylinder along n begins (T. Duff
+/// et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
+Vec3 first_tangent(const Vec3& n);
+
 /// A corner of a mesh.
 inline Vec3 corner(const Mesh& mesh, std::size_t triangle, std::size_t k) {
   const Mesh::Point& p = mesh.positions[mesh.triangles[triangle][k]];
