@@ -127,6 +127,9 @@ struct EmbreeScene::Impl {
   std::vector<Corners> corners;
   std::string error;
   float extent = 0;  ///< the longest side of the scene's box
+  /// Whether rays may be taken through the hierarchy together. By AVX2 a ray then meets what it meets alone; by SSE2,
+  /// one in a million does not.
+  bool together = active_isa() != Isa::kBaseline;
 
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
@@ -240,7 +243,7 @@ void EmbreeScene::first(RayPacket& packet) const {
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  if (goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (impl_->together && goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
   for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
     if (!packet.active[i] || packet.primitive[i] < 0) continue;
@@ -262,7 +265,7 @@ void EmbreeScene::occluded(RayPacket& packet) const {
   }
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  if (goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (impl_->together && goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcOccluded16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
 }
 

@@ -10,6 +10,13 @@
 
 namespace halfslope {
 
+std::string shown(std::string_view part) {
+  std::string text(part.substr(0, 40));
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text;
+}
+
 Mesh load_mesh(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),

@@ -19,6 +19,9 @@ Mesh parse_ply(std::string_view text, const std::string& file);
 /// Mitsuba does unless flip_tex_coords is false.
 Mesh parse_obj(std::string_view text, const std::string& file);
 
+/// A part of a file for a message: at most 40 letters, and without what a terminal would act upon.
+std::string shown(std::string_view part);
+
 /// Normals at each position: those of the triangles around it, weighted by their angles there (G. Thürmer and C.
 /// Wüthrich, "Computing Vertex Normals from Polygonal Facets", JGT 3(1), 1998), as Mitsuba computes them. Where they
 /// cancel, that of one of the triangles; +z where there is none.

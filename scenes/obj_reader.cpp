@@ -127,7 +127,7 @@ class Lines : public std::streambuf {
     std::size_t count = 0;
     for (std::string_view word = words.next(); !word.empty(); word = words.next(), ++count) {
       if (numbers == 0 ? is_corner(word) : is_number(word)) continue;
-      error("'{}' in '{}', allowed: {}", word.substr(0, 40), keyword,
+      error("'{}' in '{}', allowed: {}", shown(word), keyword,
             numbers == 0 ? "indices as i, i/j, i//k or i/j/k, from 1 up or from -1 down" : "numbers");
     }
     const std::size_t least = numbers == 0 ? 3 : numbers;

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "core/error.h"
+#include "scenes/mesh_readers.h"
 
 namespace halfslope {
 namespace {
@@ -62,25 +63,18 @@ class HeaderReader {
          fmt::format(format, std::forward<Args>(args)...));
   }
 
-  /// A part of the file for a message: short, and without what a terminal would act upon.
-  static std::string shown(std::string_view part) {
-    std::string text(part.substr(0, 40));
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
-  }
-
   bool next_line() {
     if (at_ == text_.size()) return false;
     const std::size_t end = std::min(text_.find('\n', at_), text_.size());
     line_ = text_.substr(at_, end - at_);
+    if (line_.ends_with('\r')) line_.remove_suffix(1);
     at_ = std::min(end + 1, text_.size());
     ++number_;
     words_.clear();
     for (std::size_t begin = 0; begin < line_.size();) {
-      const std::size_t word = line_.find_first_not_of(" \t\r", begin);
+      const std::size_t word = line_.find_first_not_of(" \t", begin);
       if (word == std::string_view::npos) break;
-      begin = std::min(line_.find_first_of(" \t\r", word), line_.size());
+      begin = std::min(line_.find_first_of(" \t", word), line_.size());
       words_.push_back(line_.substr(word, begin - word));
       if (words_[0] == "comment" || words_.size() > 5) break;  // no line has more to say
     }

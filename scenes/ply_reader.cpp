@@ -124,10 +124,7 @@ class Values {
     const auto [end, problem] = std::from_chars(word.data() + sign, word.data() + word.size(), value);
     if (problem != std::errc() || end != word.data() + word.size() ||
         (is_integer(type) && std::trunc(value) != value)) {
-      std::string shown(word.substr(0, 40));
-      std::replace_if(
-          shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-      error("'{}', allowed: {}", shown, is_integer(type) ? "an integer" : "a number");
+      error("'{}', allowed: {}", shown(word), is_integer(type) ? "an integer" : "a number");
     }
     rest_.remove_prefix(word.size());
     return value;
