@@ -177,7 +177,7 @@ inline F floor_positive(const F& x) {
   return xsimd::trunc(x);
 }
 
-// Transcendental functions: used by analytic scenes and general power weights only.
+// Transcendental functions: used by analytic scenes, general power weights and a few BSDFs only.
 template <ScalarNumber F>
 inline F exp(F x) {
   return std::exp(x);
@@ -209,6 +209,15 @@ inline F expm1(F x) {
 template <Packet F>
 inline F expm1(const F& x) {
   return xsimd::expm1(x);
+}
+
+template <ScalarNumber F>
+inline F erf(F x) {
+  return std::erf(x);
+}
+template <Packet F>
+inline F erf(const F& x) {
+  return xsimd::erf(x);
 }
 
 template <class F>

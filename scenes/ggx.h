@@ -1,4 +1,5 @@
-// The isotropic GGX microfacet distribution, in the local frame whose z axis is the surface normal.
+// The GGX microfacet distribution (isotropic but for sampling; scenes/microfacet.h has D and masking for two
+// roughnesses), in the local frame whose z axis is the surface normal.
 //
 // Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction through Rough Surfaces", EGSR 2007 (D and G₁);
 // Heitz, "Understanding the Masking-Shadowing Function in Microfacet-Based BRDFs", JCGT 3(2), 2014 (visible normals,
@@ -89,18 +90,23 @@ inline F ggx_reflection_pdf_solid_angle(const F& alpha, const F& cos_w, const Ve
 /// (4 v·h) = 1 / (2π (1 + v_z)), a constant. So o is uniform on the spherical cap o_z ≥ −v_z, whose solid angle is 2π(1
 /// + v_z) — and h_z ≥ 0 exactly there, for h = (o + v)/|o + v|. A uniform cap has a uniform height: o_z = 1 − u₂(1 +
 /// v_z), with the azimuth 2πu₁. Then o_z + v_z = (1 − u₂)(1 + v_z) and, for the radius of o's circle, 1 − o_z = u₂(1 +
-/// v_z): neither cancels. Normals go back by the inverse transpose, again diag(α, α, 1) up to scale.
+/// v_z): neither cancels. Normals go back by the inverse transpose, again diag(α, α, 1) up to scale. A roughness for
+/// each tangent stretches each by its own.
 template <class F>
-inline Vec<F> sample_ggx_visible_normal(const F& alpha, const Vec<F>& w, const F& u1, const F& u2) {
+inline Vec<F> sample_ggx_visible_normal(const F& alpha_u, const F& alpha_v, const Vec<F>& w, const F& u1, const F& u2) {
   using T = scalar_t<F>;
   const F one(T(1)), zero(T(0));
-  const Vec<F> v = normalise(Vec<F>{alpha * w.x, alpha * w.y, w.z});
+  const Vec<F> v = normalise(Vec<F>{alpha_u * w.x, alpha_v * w.y, w.z});
   const F cap_height = one + v.z;
   const F one_minus_z = u2 * cap_height;
   const F radius = sqrt(one_minus_z * max(F(T(2)) - one_minus_z, zero));
   const auto azimuth = sin_cos_2pi(u1);
-  return normalise(
-      Vec<F>{alpha * fma(radius, azimuth.cos, v.x), alpha * fma(radius, azimuth.sin, v.y), (one - u2) * cap_height});
+  return normalise(Vec<F>{alpha_u * fma(radius, azimuth.cos, v.x), alpha_v * fma(radius, azimuth.sin, v.y),
+                          (one - u2) * cap_height});
+}
+template <class F>
+inline Vec<F> sample_ggx_visible_normal(const F& alpha, const Vec<F>& w, const F& u1, const F& u2) {
+  return sample_ggx_visible_normal(alpha, alpha, w, u1, u2);
 }
 
 /// The Fresnel reflectance, averaged over polarisations, of a conductor with relative index η + ik seen under a cosine

@@ -82,6 +82,12 @@ struct Expm1 {
     return expm1(x);
   }
 };
+struct Erf {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return erf(x);
+  }
+};
 struct Sin2Pi {
   template <class F>
   static F at(const F& x, const F&, const F&) {
@@ -114,7 +120,8 @@ constexpr PacketFunction<T> kFunctions[] = {
     entry<T, AnyLane>("any_lane"), entry<T, FloorPositive>("floor_positive"),
     entry<T, Exp>("exp"),          entry<T, Log>("log"),
     entry<T, Log1p>("log1p"),      entry<T, Expm1>("expm1"),
-    entry<T, Sin2Pi>("sin_2pi"),   entry<T, Cos2Pi>("cos_2pi"),
+    entry<T, Erf>("erf"),          entry<T, Sin2Pi>("sin_2pi"),
+    entry<T, Cos2Pi>("cos_2pi"),
 };
 
 }  // namespace
