@@ -26,12 +26,13 @@ struct MaterialData {
   T diffuse_divisor = 1;       ///< of a plastic: ρ comes out as ρ / (diffuse_divisor − diffuse_tint ρ), times both
   T diffuse_tint = 0;          ///<   ways' transmittance through the surface
   /// Of a rough plastic: the polynomial of RoughTransmittance and its argument.
-  T transmittance_centre = 0, transmittance_inverse_width = 1, transmittance_scale = 1, transmittance_offset = 0;
+  T transmittance_inverse_width = 1, transmittance_scale = 1;
   T transmittance_terms[kTransmittanceTerms] = {};
 };
 
 /// With all that can be worked out once, in double. Roughness below 1e-4 counts as that, as in Mitsuba. A rough
-/// dielectric whose two sides have one index is the smooth one: light passes straight through.
+/// dielectric whose two sides have one index is the smooth one: light passes straight through. Throws Error(kBadInput)
+/// for a rough plastic with ior < 1: its model would give back more light than it gets.
 template <class T>
 MaterialData<T> material_data(const Bsdf& bsdf);
 extern template MaterialData<float> material_data<float>(const Bsdf&);
