@@ -9,9 +9,12 @@
 #endif
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <type_traits>
 
 // xsimd 8.1 has no fused multiply-add for AVX-512 and would fall back to two roundings; with these overloads, seen
@@ -225,13 +228,13 @@ struct SinCos {
   F sin, cos;
 };
 
-/// sin(2πu) and cos(2πu) for u in [0, 1]: u is reduced exactly to the nearest quarter turn, then the Taylor polynomials
-/// on [−π/4, π/4] (truncation below a quarter ulp). No branches: one lane never changes another.
+namespace packet_detail {
+
+/// sin x and cos x for |x| ≤ π/4 by their Taylor polynomials (truncation below a quarter ulp), then turned by `quarter`
+/// quarter turns, 0 … 4.
 template <class F>
-inline SinCos<F> sin_cos_2pi(const F& u) {
+inline SinCos<F> sin_cos_reduced(const F& quarter, const F& x) {
   using T = scalar_t<F>;
-  const F quarter = floor_positive(fma(u, F(T(4)), F(T(0.5))));  // 0 … 4
-  const F x = fma(quarter, F(T(-0.25)), u) * F(T(6.283185307179586476925286766559));
   const F x2 = x * x;
   F s, c;
   if constexpr (std::is_same_v<T, float>) {
@@ -272,6 +275,104 @@ inline SinCos<F> sin_cos_2pi(const F& u) {
   const auto cos_negative = (quarter == F(T(1))) | (quarter == F(T(2)));
   const F sine = select(odd, c, s), cosine = select(odd, s, c);
   return {select(sin_negative, -sine, sine), select(cos_negative, -cosine, cosine)};
+}
+
+/// π/2 in three parts: products of the first two with 0 … 4 are exact.
+template <class T>
+inline constexpr std::array<T, 3> kHalfPi = {T(0x1.92p0), T(0x1.fb4p-12), T(0x1.4442d2p-24)};
+template <>
+inline constexpr std::array<double, 3> kHalfPi<double> = {0x1.921fb544p0, 0x1.0b4611a6p-34, 0x1.3198a2e037073p-69};
+
+/// (atan t − t)/t³ as a polynomial in t², minimax on |t| ≤ tan(π/8) (Remez): the error of atan t is below 7·10⁻¹⁰ t in
+/// binary32 and 2·10⁻¹⁸ t in binary64.
+template <class F>
+inline F atan_tail(const F& t2) {
+  if constexpr (std::is_same_v<scalar_t<F>, float>) {
+    constexpr std::array<float, 5> kTail = {-0.3333331549707184f, 0.19998488892799043f, -0.14243837746677332f,
+                                            0.10595915432864471f, -0.06083223752852424f};
+    F p(kTail[4]);
+    for (int i = 3; i >= 0; --i) p = fma(t2, p, F(kTail[static_cast<std::size_t>(i)]));
+    return p;
+  } else {
+    constexpr std::array<double, 11> kTail = {-0.333333333333332,  0.19999999999954013,  -0.14285714280241865,
+                                              0.1111111078581742,  -0.09090897827431184, 0.07692061478694526,
+                                              -0.0666311859502837, 0.05847995935629288,  -0.05039787025470772,
+                                              0.03807683223398627, -0.017920643679001078};
+    F p(kTail[10]);
+    for (int i = 9; i >= 0; --i) p = fma(t2, p, F(kTail[static_cast<std::size_t>(i)]));
+    return p;
+  }
+}
+
+}  // namespace packet_detail
+
+/// sin(2πu) and cos(2πu) for u in [0, 1]: u is reduced exactly to the nearest quarter turn. No branches: one lane never
+/// changes another.
+template <class F>
+inline SinCos<F> sin_cos_2pi(const F& u) {
+  using T = scalar_t<F>;
+  const F quarter = floor_positive(fma(u, F(T(4)), F(T(0.5))));  // 0 … 4
+  return packet_detail::sin_cos_reduced(quarter, fma(quarter, F(T(-0.25)), u) * F(T(6.283185307179586476925286766559)));
+}
+
+/// sin x and cos x for x in [0, 2π], x in radians: small x keep their digits, as do the zeros of either to the last
+/// places of π.
+template <class F>
+inline SinCos<F> sin_cos(const F& x) {
+  using T = scalar_t<F>;
+  constexpr std::array<T, 3> half_pi = packet_detail::kHalfPi<T>;
+  const F quarter = floor_positive(fma(x, F(T(0.6366197723675813430755)), F(T(0.5))));  // 0 … 4
+  F r = fma(quarter, F(-half_pi[0]), x);
+  r = fma(quarter, F(-half_pi[1]), r);
+  r = fma(quarter, F(-half_pi[2]), r);
+  return packet_detail::sin_cos_reduced(quarter, r);
+}
+
+/// The angle in (−π, π] of the point (x, y), as std::atan2 but for its zeros: y = ±0 counts as +0, and (0, 0) gives 0.
+/// For |x|, |y| below half the largest number; where the smaller over the larger underflows, so does the angle's
+/// distance from an axis. The same bits in every build with fma (and so not called atan2, which for packets would find
+/// xsimd's). Reduced to |t| ≤ tan(π/8) by atan(b/a) = π/4 + atan((b − a)/(b + a)).
+template <class F>
+inline F arctan2(const F& y, const F& x) {
+  using T = scalar_t<F>;
+  constexpr std::array<T, 3> half_pi = packet_detail::kHalfPi<T>;
+  const F zero(T(0)), ax = abs(x), ay = abs(y), large = max(ax, ay), small = min(ax, ay);
+  const auto octant = small > F(T(0.41421356237309504880)) * large;
+  const F above = select(octant, small - large, small), below = select(octant, small + large, large);
+  const F t = above / select(below > zero, below, F(T(1)));
+  const F t2 = t * t;
+  const F tail = t * (t2 * packet_detail::atan_tail(t2));
+  // Each of the sums below is of a constant's leading part and what is smaller by far.
+  constexpr T high = half_pi[0] + half_pi[1], low = (half_pi[0] - high + half_pi[1]) + half_pi[2];
+  F angle = select(octant, F(high / 2) + (t + (tail + F(low / 2))), t + tail);
+  angle = select(ay > ax, F(high) - (angle - F(low)), angle);
+  angle = select(x < zero, F(2 * high) - (angle - F(2 * low)), angle);
+  return select(y < zero, -angle, angle);
+}
+
+/// arccos x in [0, π] for x in [−1, 1], where 1 − x² is taken as (1 − x)(1 + x).
+template <class F>
+inline F arccos(const F& x) {
+  const F one(scalar_t<F>(1));
+  return arctan2(sqrt((one - x) * (one + x)), x);
+}
+
+/// arcsin x in [−π/2, π/2] for x in [−1, 1].
+template <class F>
+inline F arcsin(const F& x) {
+  const F one(scalar_t<F>(1));
+  return arctan2(x, sqrt((one - x) * (one + x)));
+}
+
+/// The largest power of two that is at most x, for normal x > 0: lengths are scaled by it without a rounding.
+template <ScalarNumber F>
+inline F power_of_two_below(F x) {
+  using Bits = std::conditional_t<std::is_same_v<F, float>, std::uint32_t, std::uint64_t>;
+  return std::bit_cast<F>(std::bit_cast<Bits>(x) & std::bit_cast<Bits>(std::numeric_limits<F>::infinity()));
+}
+template <Packet F>
+inline F power_of_two_below(const F& x) {
+  return x & F(std::numeric_limits<scalar_t<F>>::infinity());
 }
 
 /// The widest number type of this translation unit's target for lanes of T; plain T in the scalar build of the kernels.
