@@ -15,19 +15,12 @@
 
 namespace halfslope {
 
-/// A rectangle { center + a·half_u·u + b·half_v·v : a, b ∈ [−1, 1] } relative to the receiver; u, v and normal unit
-/// length and orthogonal.
-template <class F>
-struct RectangleFrame {
-  Vec<F> center, u, v, normal;
-  F half_u, half_v;
-};
-
+/// A point of a rectangle: position = corner + a·edge_1 + b·edge_2, relative to the receiver.
 template <class F>
 struct RectanglePoint {
-  Vec<F> position;  ///< relative to the receiver
-  F a, b;           ///< in [−1, 1]
-  F solid_angle;    ///< of the rectangle, in sr: the density of the direction is its inverse; 0 where seen edge-on
+  Vec<F> position;
+  F a, b;         ///< in [0, 1]
+  F solid_angle;  ///< of the rectangle, in sr: the density of the direction is its inverse; 0 where seen edge-on
 };
 
 namespace spherical {
@@ -169,44 +162,71 @@ inline Between<F> split_y(const Rectangle<F>& q, const F& x, const F& v) {
   return {share, select(q.height > d, min(max(d * h / cosine, q.y0), q.y1), fma(-share, q.height, q.y1))};
 }
 
-/// The rectangle in its own axes, mirrored so that its middle is not left of or below the receiver, in a unit of length
-/// that keeps products of three in range.
+/// The rectangle in its own axes, with what leads back.
 template <class F>
-inline Rectangle<F> rectangle_of(const RectangleFrame<F>& frame, const F& x, const F& y, const F& z) {
+struct PlacedRectangle {
+  Vec<F> u, v, normal;    ///< unit length
+  F z;                    ///< signed
+  mask_t<F> left, under;  ///< where it was mirrored, its middle being left of or below the receiver
+  Rectangle<F> own;
+};
+
+/// In a unit of length that keeps products of three in range.
+template <class F>
+inline PlacedRectangle<F> place_rectangle(const Vec<F>& corner, const Vec<F>& edge_1, const Vec<F>& edge_2) {
   using T = scalar_t<F>;
-  const F size = max(max(abs(x), abs(y)), max(abs(z), max(frame.half_u, frame.half_v)));
-  const F unit = F(T(1)) / power_of_two_below(max(size, F(std::numeric_limits<T>::min())));
-  const F ax = unit * abs(x), ay = unit * abs(y), wide = unit * frame.half_u, high = unit * frame.half_v;
-  return {ax - wide, ax + wide, ay - high, ay + high, unit * abs(z), wide + wide, high + high, unit};
+  const F zero(T(0)), one(T(1)), half(T(0.5));
+  PlacedRectangle<F> placed;
+  const F width = length(edge_1), height = length(edge_2);
+  placed.u = (one / width) * edge_1, placed.v = (one / height) * edge_2, placed.normal = cross(placed.u, placed.v);
+  const F x = fma(half, width, dot(corner, placed.u)), y = fma(half, height, dot(corner, placed.v));
+  placed.z = dot(corner, placed.normal);
+  placed.left = x < zero, placed.under = y < zero;
+  const F size = max(max(abs(x), abs(y)), max(abs(placed.z), max(width, height)));
+  const F unit = one / power_of_two_below(max(size, F(std::numeric_limits<T>::min())));
+  const F ax = unit * abs(x), ay = unit * abs(y), wide = unit * width, high = unit * height;
+  placed.own = {fma(-half, wide, ax),
+                fma(half, wide, ax),
+                fma(-half, high, ay),
+                fma(half, high, ay),
+                unit * abs(placed.z),
+                wide,
+                high,
+                unit};
+  return placed;
 }
 
 }  // namespace spherical
 
-/// The solid angle in sr, in [0, 2π), of the rectangle seen from the origin, from whichever side; 0 in its plane.
+/// The solid angle in sr, in [0, 2π), of the rectangle with corner c and edges edge_1 ⟂ edge_2, seen from the origin,
+/// from whichever side; 0 in its plane.
 template <class F>
-inline F rectangle_solid_angle(const RectangleFrame<F>& frame) {
-  const F x = dot(frame.center, frame.u), y = dot(frame.center, frame.v), z = dot(frame.center, frame.normal);
-  return spherical::solid_angle(spherical::rectangle_of(frame, x, y, z));
+inline F rectangle_solid_angle(const Vec<F>& corner, const Vec<F>& edge_1, const Vec<F>& edge_2) {
+  return spherical::solid_angle(spherical::place_rectangle(corner, edge_1, edge_2).own);
 }
 
-/// A point of the rectangle, its direction uniform in solid angle, for u₁ and u₂ in [0, 1): a grows with u₁ and b with
-/// u₂, from −1 to 1.
+/// A point of that rectangle, its direction uniform in solid angle, for u₁ and u₂ in [0, 1): a grows with u₁ and b with
+/// u₂.
 template <class F>
-inline RectanglePoint<F> sample_rectangle_solid_angle(const RectangleFrame<F>& frame, const F& u1, const F& u2) {
+inline RectanglePoint<F> sample_rectangle_solid_angle(const Vec<F>& corner, const Vec<F>& edge_1, const Vec<F>& edge_2,
+                                                      const F& u1, const F& u2) {
   using T = scalar_t<F>;
-  const F zero(T(0)), one(T(1)), minus_two(T(-2));
-  const F x = dot(frame.center, frame.u), y = dot(frame.center, frame.v), z = dot(frame.center, frame.normal);
-  const auto left = x < zero, under = y < zero;
-  const spherical::Rectangle<F> q = spherical::rectangle_of(frame, x, y, z);
+  const F zero(T(0)), one(T(1)), half(T(0.5));
+  const auto placed = spherical::place_rectangle(corner, edge_1, edge_2);
+  const spherical::Rectangle<F>& q = placed.own;
   const F all = spherical::solid_angle(q);
-  const auto at_x = spherical::split_x(q, select(left, u1, one - u1) * all);
-  const auto at_y = spherical::split_y(q, at_x.at, select(under, u2, one - u2));
-  const F a = fma(minus_two, at_x.left, one), b = fma(minus_two, at_y.left, one);
-  const F to_u = at_x.at / q.unit, to_v = at_y.at / q.unit;
-  const Vec<F> position = select(left, -to_u, to_u) * frame.u + select(under, -to_v, to_v) * frame.v + z * frame.normal;
+  const auto x = spherical::split_x(q, select(placed.left, u1, one - u1) * all);
+  const auto y = spherical::split_y(q, x.at, select(placed.under, u2, one - u2));
+  const F to_u = x.at / q.unit, to_v = y.at / q.unit;
+  const Vec<F> position = select(placed.left, -to_u, to_u) * placed.u + select(placed.under, -to_v, to_v) * placed.v +
+                          placed.z * placed.normal;
   const auto seen = all > zero;
-  return {select(seen, position, frame.center), select(seen, select(left, -a, a), zero),
-          select(seen, select(under, -b, b), zero), all};
+  const auto where = [&](const F& any, const F& edge_on) { return select(seen, any, edge_on); };
+  const Vec<F> middle = corner + half * edge_1 + half * edge_2;
+  return {{where(position.x, middle.x), where(position.y, middle.y), where(position.z, middle.z)},
+          where(select(placed.left, x.left, one - x.left), half),
+          where(select(placed.under, y.left, one - y.left), half),
+          all};
 }
 
 }  // namespace halfslope

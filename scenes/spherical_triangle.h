@@ -22,6 +22,12 @@ struct TrianglePoint {
 
 namespace spherical {
 
+/// a where the mask holds, else b.
+template <class F>
+inline Vec<F> either(const mask_t<F>& mask, const Vec<F>& a, const Vec<F>& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
 /// tan(γ/2) of the angle γ in [0, π) between two vectors, from |a × b|, a·b and |a||b|: of the two forms the one whose
 /// sum does not cancel.
 template <class F>
@@ -153,7 +159,7 @@ inline TrianglePoint<F> sample_triangle_solid_angle(const Vec<F>& corner, const 
   if (any_lane(wide)) {
     const Vec<F> turned =
         spherical::turned(t.corner, t.length_0, normal_02, sine_02, min(tan_covered, tan_all), end.distance);
-    e = select(wide, turned, e), across = select(wide, e - corner_1, across);
+    e = spherical::either(wide, turned, e), across = spherical::either(wide, e - corner_1, across);
   }
   const Vec<F> normal_1e = cross(corner_1, across);
   const F sine_1e = length(normal_1e);
@@ -171,7 +177,7 @@ inline TrianglePoint<F> sample_triangle_solid_angle(const Vec<F>& corner, const 
     const F towards = select(t.determinant > zero, azimuth_sin, -azimuth_sin) / t.length_1;
     const Vec<F> normal_of_arc = towards * cross(corner_1, normal_01) - azimuth_cos * normal_01;
     const Vec<F> ray = spherical::turned(corner_1, t.length_1, normal_of_arc, length(normal_of_arc), tan_part, one);
-    position = select(wide, (t.determinant / dot(t.normal, ray)) * ray, position);
+    position = spherical::either(wide, (t.determinant / dot(t.normal, ray)) * ray, position);
   }
   return {(one / t.unit) * position, b0, point.to_0, b2, t.solid_angle};
 }

@@ -31,12 +31,6 @@ inline Vec<F> operator*(const Vec<F>& a, const F& s) {
   return s * a;
 }
 
-/// a where the mask holds, else b.
-template <class F>
-inline Vec<F> select(const mask_t<F>& mask, const Vec<F>& a, const Vec<F>& b) {
-  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
-
 template <class F>
 inline F dot(const Vec<F>& a, const Vec<F>& b) {
   return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z));
