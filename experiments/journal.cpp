@@ -9,7 +9,7 @@
 
 #include "core/assertion.h"
 #include "core/error.h"
-#include "experiments/hash64.h"
+#include "core/hash64.h"
 #include "experiments/journal_header.h"
 
 namespace halfslope {

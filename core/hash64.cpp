@@ -1,4 +1,4 @@
-#include "experiments/hash64.h"
+#include "core/hash64.h"
 
 #include <algorithm>
 #include <bit>
