@@ -7,7 +7,7 @@
 namespace halfslope {
 
 /// As many polynomial coefficients as a rough interface's transmittance takes (scenes/rough_transmittance.h).
-inline constexpr int kTransmittanceTerms = 20;
+inline constexpr int kTransmittanceTerms = 24;
 
 /// Plain data; T is float or double. Which fields mean something depends on the kind. Colours are those without a
 /// texture: a kernel looks up the textures of `reflectance`, `specular` and `transmittance` itself.
