@@ -62,7 +62,11 @@ inline F beckmann_projected_length(const F& s, const F& c) {
 
 namespace beckmann {
 
-/// t with ½ (1 + erf t) = u in [0, 1): a Gaussian slope, within 3e-8 in u (M. Giles, "Approximating the erfinv
+/// The middle of the first step in which numbers of [0, 1) come: at 0 itself slopes are infinite.
+template <class T>
+inline constexpr T kLeastNumber = std::is_same_v<T, float> ? T(0x1p-25) : T(0x1p-54);
+
+/// t with ½ (1 + erf t) = u in (0, 1): a Gaussian slope, within 3e-8 in u (M. Giles, "Approximating the erfinv
 /// function", GPU Computing Gems Jade, 2011, table 5), polished to 1e-15 in binary64 by a step of Halley's.
 template <class F>
 inline F gaussian_slope(const F& u) {
@@ -70,7 +74,7 @@ inline F gaussian_slope(const F& u) {
   constexpr bool kSingle = std::is_same_v<T, float>;
   const F one(T(1));
   const F x = fma(F(T(2)), u, -one);
-  const F w = -log(max(F(T(4)) * u * (one - u), F(kSingle ? T(1e-9) : T(1e-18))));
+  const F w = -log(F(T(4)) * u * (one - u));
   const F centre = w - F(T(2.5)), tail = sqrt(w) - F(T(3));
   const auto polynomial = [](const F& at, std::initializer_list<T> terms) {
     F p(T(0));
@@ -96,7 +100,7 @@ inline F gaussian_slope(const F& u) {
 }
 
 /// The slope t towards w, from the density ∝ (c + s t)⁺ exp(−t²) of the visible normals of roughness 1 (Heitz & d'Eon
-/// 2014, eq. 15), w at cosine c ≥ 0 and sine s ≥ 0 to the normal, u in [0, 1).
+/// 2014, eq. 15), w at cosine c ≥ 0 and sine s ≥ 0 to the normal, u in (0, 1).
 ///
 /// With a = c/s, the integral from −a to t is ½√π f(t), f = c (erf t + erf a) + s (exp(−a²) − exp(−t²))/√π, and f(t) =
 /// u f(∞) is solved by Halley's method, from between the answers at normal incidence (a Gaussian) and at grazing
@@ -144,7 +148,9 @@ inline Vec<F> sample_beckmann_visible_normal(const F& alpha_u, const F& alpha_v,
   const F flat = sqrt(fma(x, x, y * y)), inverse = one / sqrt(fma(w.z, w.z, flat * flat));
   const auto tilted = flat > zero;
   const F cos_phi = select(tilted, x / flat, one), sin_phi = select(tilted, y / flat, zero);
-  const F towards = beckmann::visible_slope(w.z * inverse, flat * inverse, u1), across = beckmann::gaussian_slope(u2);
+  const F least(beckmann::kLeastNumber<T>);
+  const F towards = beckmann::visible_slope(w.z * inverse, flat * inverse, max(u1, least));
+  const F across = beckmann::gaussian_slope(max(u2, least));
   return normalise(Vec<F>{alpha_u * fma(towards, cos_phi, -(across * sin_phi)),
                           alpha_v * fma(towards, sin_phi, across * cos_phi), one});
 }

@@ -91,7 +91,7 @@ class RoughConductorBsdf {
     BsdfSample<F, C> sample{wi, {}, r.pdf, F(T(1)), no_lanes<F>()};
     for (int c = 0; c < C; ++c) sample.weight[c] = r.weight;
     reflectance_.tint(r.cos_microfacet, sample.weight);
-    return sample_where(both_in_front(wo, wi), sample);
+    return sample_where(both_in_front(wo, wi) & (r.pdf > F(T(0))), sample);
   }
 
  private:

@@ -30,10 +30,15 @@ class CoatedGround {
     }
   }
 
-  /// Of reflection at the coat, where that reflects `reflected` and lets `transmitted` through.
-  F specular_probability(const F& reflected, const F& transmitted) const {
-    const F specular = reflected * share_, diffuse = transmitted * (F(T(1)) - share_), sum = specular + diffuse;
-    return select(sum > F(T(0)), specular / sum, F(T(0)));
+  struct Choice {
+    F specular, diffuse;  ///< probabilities of reflection at the coat and of the ground: neither is 1 minus the other
+  };
+  /// Where the coat reflects `reflected` and lets `transmitted` through.
+  Choice choose(const F& reflected, const F& transmitted) const {
+    const F zero(T(0)), specular = reflected * share_, diffuse = transmitted * (F(T(1)) - share_);
+    const F sum = specular + diffuse;
+    // Quotients, so that a lobe that stands alone has exactly 1.
+    return {select(sum > zero, specular / sum, zero), select(sum > zero, diffuse / sum, zero)};
   }
   /// Of the ground, with neither way's transmittance.
   const F& albedo(int c) const { return albedo_[c]; }
@@ -54,28 +59,29 @@ class PlasticBsdf {
   explicit PlasticBsdf(const Get& get) : ground_(get), ior_(get(&MaterialData<T>::ior)) {}
 
   BsdfValue<F, C> evaluate(const Vec<F>& wo, const Vec<F>& wi) const {
-    const F one(T(1)), cosine_pdf = wi.z * F(std::numbers::inv_pi_v<T>);
+    const F cosine_pdf = wi.z * F(std::numbers::inv_pi_v<T>);
     const DielectricFresnel<F> out = fresnel(wo), in = fresnel(wi);
     const F through = out.transmitted * in.transmitted * cosine_pdf;
     BsdfValue<F, C> value;
     for (int c = 0; c < C; ++c) value.cosine_bsdf[c] = ground_.albedo(c) * through;
-    value.pdf = (one - ground_.specular_probability(out.reflected, out.transmitted)) * cosine_pdf;
+    value.pdf = ground_.choose(out.reflected, out.transmitted).diffuse * cosine_pdf;
     return value_where(both_in_front(wo, wi), value);
   }
 
   BsdfSample<F, C> sample(const Vec<F>& wo, const F& u_lobe, const F& u1, const F& u2) const {
     const F one(T(1)), zero(T(0));
     const DielectricFresnel<F> out = fresnel(wo);
-    const F specular = ground_.specular_probability(out.reflected, out.transmitted), diffuse = one - specular;
+    const auto choice = ground_.choose(out.reflected, out.transmitted);
     BsdfSample<F, C> sample;
-    sample.delta = u_lobe < specular;
+    sample.delta = u_lobe < choice.specular;
     const Vec<F> down = cosine_hemisphere(u1, u2);
     sample.wi = select_vec(sample.delta, Vec<F>{-wo.x, -wo.y, wo.z}, down);
-    const F coat = out.reflected / specular, ground = out.transmitted * fresnel(down).transmitted / diffuse;
+    const F coat = out.reflected / choice.specular,
+            ground = out.transmitted * fresnel(down).transmitted / choice.diffuse;
     for (int c = 0; c < C; ++c) {
       sample.weight[c] = select(sample.delta, ground_.specular(c) * coat, ground_.albedo(c) * ground);
     }
-    sample.pdf = select(sample.delta, specular, diffuse * (down.z * F(std::numbers::inv_pi_v<T>)));
+    sample.pdf = select(sample.delta, choice.specular, choice.diffuse * (down.z * F(std::numbers::inv_pi_v<T>)));
     sample.eta = one;
     return sample_where(wo.z > zero, sample);
   }
@@ -107,7 +113,7 @@ class RoughPlasticBsdf {
 
   BsdfSample<F, C> sample(const Vec<F>& wo, const F& u_lobe, const F& u1, const F& u2) const {
     const F through = transmittance_(wo.z);
-    const auto specular = u_lobe < ground_.specular_probability(F(T(1)) - through, through);
+    const auto specular = u_lobe < ground_.choose(F(T(1)) - through, through).specular;
     const Vec<F> coat = mirror(wo, distribution_.sample_visible_normal(wo, u1, u2));
     const Vec<F> wi = select_vec(specular, coat, cosine_hemisphere(u1, u2));
     return sample_of(wi, evaluate(wo, wi, through));
@@ -119,10 +125,10 @@ class RoughPlasticBsdf {
     const MicrofacetReflection<F> r = microfacet_reflection(distribution_, wo, wi);
     const F coat = r.cosine_bsdf * fresnel_dielectric(r.cos_microfacet, ior_).reflected;
     const F ground = through_o * transmittance_(wi.z) * cosine_pdf;
-    const F specular = ground_.specular_probability(one - through_o, through_o);
+    const auto choice = ground_.choose(one - through_o, through_o);
     BsdfValue<F, C> value;
     for (int c = 0; c < C; ++c) value.cosine_bsdf[c] = fma(ground_.specular(c), coat, ground_.albedo(c) * ground);
-    value.pdf = fma(specular, r.pdf, (one - specular) * cosine_pdf);
+    value.pdf = fma(choice.specular, r.pdf, choice.diffuse * cosine_pdf);
     return value_where(both_in_front(wo, wi), value);
   }
 

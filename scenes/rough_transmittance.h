@@ -2,8 +2,8 @@
 //
 // T(θ) = 1 − R(θ), R the directional albedo of reflection by its microfacets: what a rough plastic lets through to its
 // ground (Mitsuba's roughplastic). As a function of c = cos θ it bends at the scale of α from grazing incidence; so it
-// is a polynomial in log(1 + c/α), through the values at Chebyshev's nodes: within 1e-5 for GGX and α >= 0.01, 5e-4 for
-// all α >= 1e-3.
+// is a polynomial in log(1 + c/α), through the values at Chebyshev's nodes: within 2e-5 where c and α are 0.01 or more
+// and the distribution is GGX, 2e-4 where it is Beckmann's; within 1e-3 everywhere.
 #pragma once
 
 #include "core/packet.h"
@@ -45,7 +45,7 @@ class RoughTransmittance {
 /// over the near side's: within 5e-6 for ior >= 1, 5e-3 below, where F has a kink.
 double rough_reflectance(Distribution distribution, double alpha, double ior, double cos_theta);
 
-/// ∫ 2 c R dc: the share of diffuse light that comes back; within 1e-4.
+/// ∫ 2 c R dc: the share of diffuse light that comes back; within 5e-4.
 double rough_diffuse_reflectance(Distribution distribution, double alpha, double ior);
 
 /// Fills the fields transmittance_*, for ior >= 1.

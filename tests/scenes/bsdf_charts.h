@@ -71,16 +71,21 @@ class ReflectionChart {
 };
 
 /// All directions beyond the surface that some microfacet refracts to w_o, across relative index n. a is
-/// 2/π arctan(r/alpha).
+/// logarithmic in m's angle θ_m beyond the scale `alpha`.
 class RefractionChart {
  public:
   RefractionChart(double alpha, double index, const Vec<double>& wo)
-      : alpha_(alpha), index_(index), wo_(wo), o_(charts::upright(wo, wo)), azimuth_(std::atan2(wo.y, wo.x)) {}
+      : alpha_(alpha),
+        index_(index),
+        wo_(wo),
+        o_(charts::upright(wo, wo)),
+        azimuth_(std::atan2(wo.y, wo.x)),
+        range_(std::log1p(std::pow(std::numbers::pi / 2 / alpha, 2))) {}
 
   ChartPoint point(double a, double b) const {
     constexpr double kPi = std::numbers::pi;
-    const double psi = 0.5 * kPi * a, r = alpha_ * std::tan(psi);
-    const Vec<double> m = charts::normal_of_slope(r, 2 * kPi * b + azimuth_);
+    const double theta = alpha_ * std::sqrt(std::expm1(a * range_)), phi = 2 * kPi * b + azimuth_;
+    const Vec<double> m{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
     const double c = dot(o_, m), sine = std::sqrt(std::max(1 - c * c, 0.0)) / index_;
     if (c <= 0 || sine >= 1) return {o_, 0};
     const double c_t = std::sqrt(1 - sine * sine);
@@ -88,20 +93,20 @@ class RefractionChart {
     if (wi.z >= 0) return {o_, 0};
     // dω_m/dω_i = n² |w_i·m| / (w_o·m + n w_i·m)² (Walter and others 2007, eq. 17).
     const double jacobian = std::pow(c - index_ * c_t, 2) / (index_ * index_ * c_t);
-    const double r_dr = 0.5 * kPi * r * alpha_ / (std::cos(psi) * std::cos(psi));
-    return {charts::upright(wo_, wi), jacobian * m.z * m.z * m.z * r_dr * 2 * kPi};
+    const double theta_dtheta = 0.5 * alpha_ * alpha_ * range_ * std::exp(a * range_);
+    return {charts::upright(wo_, wi), jacobian * std::sin(theta) / theta * theta_dtheta * 2 * kPi};
   }
   ChartCoordinates coordinates(const Vec<double>& wi) const {
     const Vec<double> h = o_ + index_ * charts::upright(wo_, wi);
     const double sign = h.z > 0 ? 1 : -1;
-    const double psi = std::atan2(std::hypot(h.x, h.y), std::fabs(h.z) * alpha_);
-    return {psi * 2 / std::numbers::pi, charts::turn(std::atan2(sign * h.y, sign * h.x) - azimuth_)};
+    const double scaled = std::atan2(std::hypot(h.x, h.y), std::fabs(h.z)) / alpha_;
+    return {std::log1p(scaled * scaled) / range_, charts::turn(std::atan2(sign * h.y, sign * h.x) - azimuth_)};
   }
 
  private:
   double alpha_, index_;
   Vec<double> wo_, o_;
-  double azimuth_;
+  double azimuth_, range_;
 };
 
 }  // namespace halfslope

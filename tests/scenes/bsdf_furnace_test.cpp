@@ -40,7 +40,7 @@ Albedo albedo(const AnyBsdf<T>& bsdf, const Vec<T>& wo, int count) {
 /// by chance with probability 3e-7 where the albedo is 1.
 template <class T>
 void expect_no_gain(const NamedBsdf& named, const AnyBsdf<T>& bsdf, double cosine) {
-  const Albedo found = albedo<T>(bsdf, at_cosine<T>(cosine), 20'000);
+  const Albedo found = albedo<T>(bsdf, at_cosine<T>(cosine), 8'000);
   const bool mixture = named.bsdf.kind == BsdfKind::kPlastic || named.bsdf.kind == BsdfKind::kRoughPlastic ||
                        named.bsdf.kind == BsdfKind::kPhong;
   const double rounding = std::is_same_v<T, float> ? 2e-6 : 1e-12;

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "scenes/beckmann.h"
 #include "scenes/closed_form.h"
 #include "scenes/ggx.h"
 #include "scenes/intersection.h"
@@ -42,6 +43,7 @@ F evaluate(const json& entry) {
   if (function == "pdf_solid_angle_from_area") return pdf_solid_angle_from_area(in("pdfA"), in("r"), in("cos"));
   if (function == "geometry_term") return geometry_term(in("c1"), in("c2"), in("r"));
   if (function == "area_contribution") return area_contribution(in("f"), in("c1"), in("c2"), in("r"), in("pdfA"));
+  if (function == "beckmann_d") return beckmann_d(in("alpha"), in("cos_h"));
   if (function == "ggx_d") return ggx_d(in("alpha"), in("cos_h"));
   if (function == "ggx_lambda") return ggx_lambda(in("alpha"), in("cos"));
   if (function == "ggx_g1_over_cos") return ggx_g1_over_cos(in("alpha"), in("cos"));
