@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "scenes/bsdf.h"
 #include "scenes/fresnel.h"
 #include "scenes/gauss_legendre.h"
 #include "scenes/rough_transmittance.h"

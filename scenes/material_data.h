@@ -1,10 +1,11 @@
 // A surface's BSDF as kernels read it.
 #pragma once
 
-#include "scenes/bsdf.h"
 #include "scenes/bsdf_kind.h"
 
 namespace halfslope {
+
+struct Bsdf;
 
 /// As many polynomial coefficients as a rough interface's transmittance takes (scenes/rough_transmittance.h).
 inline constexpr int kTransmittanceTerms = 24;

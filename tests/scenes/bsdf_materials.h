@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "scenes/bsdf.h"
 #include "scenes/bsdf_classes.h"
 
 namespace halfslope {
