@@ -214,6 +214,7 @@ inline F expm1(const F& x) {
   return xsimd::expm1(x);
 }
 
+/// In packets of double it is right to 80 units of the last place only, 1e-14.
 template <ScalarNumber F>
 inline F erf(F x) {
   return std::erf(x);

@@ -72,6 +72,7 @@ inline BsdfSample<F, C> sample_where(const mask_t<F>& mask, BsdfSample<F, C> sam
   for (int c = 0; c < C; ++c) sample.weight[c] = select(mask, sample.weight[c], zero);
   sample.pdf = select(mask, sample.pdf, zero);
   sample.eta = select(mask, sample.eta, one);
+  sample.delta = sample.delta & mask;
   return sample;
 }
 
