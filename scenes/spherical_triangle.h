@@ -167,8 +167,8 @@ inline TrianglePoint<F> sample_triangle_solid_angle(const Vec<F>& corner, const 
   const F tan_part = min(sqrt(u2) * tan_arc / sqrt(fma((one - u2) * tan_arc, tan_arc, one)), tan_arc);
   const spherical::EdgePoint<F> point = spherical::point_of_edge(t.length_1, end.distance, sine_1e, tan_part, tan_arc);
 
-  const F b0 = point.to_1 * end.to_0, b2 = point.to_1 * end.to_1;
-  Vec<F> position = b0 * t.corner + point.to_0 * corner_1 + b2 * corner_2;
+  F b0 = point.to_1 * end.to_0, b1 = point.to_0, b2 = point.to_1 * end.to_1;
+  Vec<F> position = b0 * t.corner + b1 * corner_1 + b2 * corner_2;
   if (any_lane(wide)) {
     const F squared = half.sin * half.sin;
     const F azimuth_sin = half.sin * fma(side_of_0, half.cos, -(cos_of_0 * half.sin));
@@ -178,8 +178,13 @@ inline TrianglePoint<F> sample_triangle_solid_angle(const Vec<F>& corner, const 
     const Vec<F> normal_of_arc = towards * cross(corner_1, normal_01) - azimuth_cos * normal_01;
     const Vec<F> ray = spherical::turned(corner_1, t.length_1, normal_of_arc, length(normal_of_arc), tan_part, one);
     position = spherical::either(wide, (t.determinant / dot(t.normal, ray)) * ray, position);
+    const Vec<F> from_0 = position - t.corner, weight = (one / dot(t.normal, t.normal)) * t.normal;
+    const F toward_1 = min(max(dot(cross(from_0, t.edge_2), weight), zero), one);
+    const F toward_2 = min(max(dot(cross(t.edge_1, from_0), weight), zero), one - toward_1);
+    b1 = select(wide, toward_1, b1), b2 = select(wide, toward_2, b2);
+    b0 = select(wide, one - toward_1 - toward_2, b0);
   }
-  return {(one / t.unit) * position, b0, point.to_0, b2, t.solid_angle};
+  return {(one / t.unit) * position, b0, b1, b2, t.solid_angle};
 }
 
 }  // namespace halfslope
