@@ -23,6 +23,7 @@ struct Bounds {
 
 /// Widens a's cone of normals to the least that holds b's too (Conty Estevez and Kulla, algorithm 1).
 void merge_cones(Bounds& a, const Bounds& b) {
+  if (a.normals >= kPi) return;
   const bool first_wider = a.normals >= b.normals;
   const Vec3 wide = first_wider ? a.axis : b.axis, narrow = first_wider ? b.axis : a.axis;
   const double wide_angle = std::max(a.normals, b.normals), narrow_angle = std::min(a.normals, b.normals);
@@ -67,7 +68,7 @@ struct Item {
   Vec3 middle;
 };
 
-constexpr std::size_t kBuckets = 12;
+constexpr std::size_t kBuckets = 12, kMany = 1024;
 constexpr int kHeuristicDepth = 32;  ///< below it nodes are halved by number, so that 2³¹ leaves need 64 levels at most
 
 /// Where `items` are best cut, reordering them: by the heuristic over buckets of the axis, or into halves.
@@ -91,7 +92,8 @@ std::size_t cut(std::span<Item> items, int depth) {
     return std::min(static_cast<std::size_t>(along * static_cast<double>(kBuckets)), kBuckets - 1);
   };
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (!(middles.sizes()[axis] > 0)) continue;
+    // Of many lights the longest axis is as good as the best, and a third of the work.
+    if (!(middles.sizes()[axis] > 0) || (items.size() > kMany && axis != longest)) continue;
     struct Bucket {
       Bounds bounds;
       bool any = false;
