@@ -100,6 +100,42 @@ struct Cos2Pi {
     return sin_cos_2pi(x).cos;
   }
 };
+struct Sin {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return sin_cos(x).sin;
+  }
+};
+struct Cos {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return sin_cos(x).cos;
+  }
+};
+struct Arctan2 {
+  template <class F>
+  static F at(const F& x, const F& y, const F&) {
+    return arctan2(y, x);
+  }
+};
+struct Arccos {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return arccos(x);
+  }
+};
+struct Arcsin {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return arcsin(x);
+  }
+};
+struct PowerOfTwoBelow {
+  template <class F>
+  static F at(const F& x, const F&, const F&) {
+    return power_of_two_below(x);
+  }
+};
 
 template <class Function, class F>
 void apply(const scalar_t<F>* x, const scalar_t<F>* y, const scalar_t<F>* z, std::size_t count, scalar_t<F>* out) {
@@ -114,14 +150,27 @@ constexpr PacketFunction<T> entry(const char* name) {
 
 template <class T>
 constexpr PacketFunction<T> kFunctions[] = {
-    entry<T, Abs>("abs"),          entry<T, Sqrt>("sqrt"),
-    entry<T, Min>("min"),          entry<T, Max>("max"),
-    entry<T, Fma>("fma"),          entry<T, Select>("select"),
-    entry<T, AnyLane>("any_lane"), entry<T, FloorPositive>("floor_positive"),
-    entry<T, Exp>("exp"),          entry<T, Log>("log"),
-    entry<T, Log1p>("log1p"),      entry<T, Expm1>("expm1"),
-    entry<T, Erf>("erf"),          entry<T, Sin2Pi>("sin_2pi"),
+    entry<T, Abs>("abs"),
+    entry<T, Sqrt>("sqrt"),
+    entry<T, Min>("min"),
+    entry<T, Max>("max"),
+    entry<T, Fma>("fma"),
+    entry<T, Select>("select"),
+    entry<T, AnyLane>("any_lane"),
+    entry<T, FloorPositive>("floor_positive"),
+    entry<T, Exp>("exp"),
+    entry<T, Log>("log"),
+    entry<T, Log1p>("log1p"),
+    entry<T, Expm1>("expm1"),
+    entry<T, Erf>("erf"),
+    entry<T, Sin2Pi>("sin_2pi"),
     entry<T, Cos2Pi>("cos_2pi"),
+    entry<T, Sin>("sin"),
+    entry<T, Cos>("cos"),
+    entry<T, Arctan2>("arctan2"),
+    entry<T, Arccos>("arccos"),
+    entry<T, Arcsin>("arcsin"),
+    entry<T, PowerOfTwoBelow>("power_of_two_below"),
 };
 
 }  // namespace
