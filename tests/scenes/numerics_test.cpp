@@ -16,6 +16,9 @@
 #include "scenes/measure.h"
 #include "scenes/phong.h"
 #include "scenes/solid_angle.h"
+#include "scenes/sphere_cone.h"
+#include "scenes/spherical_rectangle.h"
+#include "scenes/spherical_triangle.h"
 #include "scenes/warp.h"
 
 namespace halfslope {
@@ -66,6 +69,18 @@ F evaluate(const json& entry) {
       vertices.emplace_back(vertex.at(0), vertex.at(1), vertex.at(2));
     }
     return static_cast<F>(polygon_form_factor(vertices));
+  }
+  if (function == "triangle_solid_angle") {
+    const Vec<F> corner = vec("v0");
+    return triangle_solid_angle(corner, vec("v1") - corner, vec("v2") - corner);
+  }
+  if (function == "rectangle_solid_angle") {
+    return rectangle_solid_angle<F>({in("x0"), in("y0"), in("z")}, {in("x1") - in("x0"), F(0), F(0)},
+                                    {F(0), in("y1") - in("y0"), F(0)});
+  }
+  if (function == "cone_sample_sin") {  // a sphere one unit away
+    const Vec<F> d = sample_sphere_solid_angle<F>({F(0), F(0), F(1)}, in("sinThetaMax"), in("u"), F(0)).direction;
+    return std::hypot(d.x, d.y);
   }
   if (function == "ggx_visible_normal_pdf") return ggx_visible_normal_pdf(in("alpha"), vec("w"), vec("h"));
   throw std::runtime_error("no function " + function);
