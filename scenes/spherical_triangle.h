@@ -102,7 +102,10 @@ inline Triangle<F> triangle_of(const Vec<F>& corner, const Vec<F>& edge_1, const
   const Vec<F> corner_1 = t.corner + t.edge_1, corner_2 = t.corner + t.edge_2;
   t.length_0 = length(t.corner), t.length_1 = length(corner_1), t.length_2 = length(corner_2);
   t.dot_01 = dot(t.corner, corner_1), t.dot_02 = dot(t.corner, corner_2), t.dot_12 = dot(corner_1, corner_2);
-  t.normal = cross(t.edge_1, t.edge_2), t.determinant = dot(t.corner, t.normal);
+  // The products of the nearest corner with the normal cancel least.
+  Vec<F> nearest = either(t.length_1 < t.length_0, corner_1, t.corner);
+  nearest = either(t.length_2 < min(t.length_0, t.length_1), corner_2, nearest);
+  t.normal = cross(t.edge_1, t.edge_2), t.determinant = dot(nearest, t.normal);
   const F below = fma(t.length_0 * t.length_1, t.length_2,
                       fma(t.dot_01, t.length_2, fma(t.dot_02, t.length_1, t.dot_12 * t.length_0)));
   t.solid_angle = F(T(2)) * arctan2(abs(t.determinant), below);
