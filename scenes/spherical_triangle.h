@@ -29,13 +29,13 @@ inline Vec<F> either(const mask_t<F>& mask, const Vec<F>& a, const Vec<F>& b) {
 }
 
 /// tan(γ/2) of the angle γ in [0, π) between two vectors, from |a × b|, a·b and |a||b|: of the two forms the one whose
-/// sum does not cancel.
+/// sum does not cancel. At most 10¹⁷, so that its square is a number: γ is then π to all digits.
 template <class F>
 inline F tan_half_angle(const F& cross, const F& dot_product, const F& lengths) {
   const F zero(scalar_t<F>(0)), one(scalar_t<F>(1));
   const auto acute = dot_product >= zero;
   const F above = select(acute, cross, lengths - dot_product), below = select(acute, lengths + dot_product, cross);
-  return above / select(below > zero, below, one);
+  return min(above / select(below > zero, below, one), F(scalar_t<F>(1e17)));
 }
 
 /// sin γ from tan(γ/2).
@@ -108,8 +108,32 @@ inline Triangle<F> triangle_of(const Vec<F>& corner, const Vec<F>& edge_1, const
   t.normal = cross(t.edge_1, t.edge_2), t.determinant = dot(nearest, t.normal);
   const F below = fma(t.length_0 * t.length_1, t.length_2,
                       fma(t.dot_01, t.length_2, fma(t.dot_02, t.length_1, t.dot_12 * t.length_0)));
-  t.solid_angle = F(T(2)) * arctan2(abs(t.determinant), below);
+  t.solid_angle = select(t.determinant == F(T(0)), F(T(0)), F(T(2)) * arctan2(abs(t.determinant), below));
   return t;
+}
+
+/// The point of the triangle's plane to which one turns from c₁, by an angle given by the tangent of its half, in the
+/// plane that cuts off u₁ of the solid angle (see sample_triangle_solid_angle); `half` are S and C.
+template <class F>
+inline Vec<F> along_meridian(const Triangle<F>& t, const SinCos<F>& half, const Vec<F>& normal_01, const F& side_of_0,
+                             const F& cos_of_0, const F& tan_part, const F& distance_by_sines) {
+  using T = scalar_t<F>;
+  const F zero(T(0)), one(T(1)), tiny(std::numeric_limits<T>::min());
+  const Vec<F> corner_1 = t.corner + t.edge_1;
+  const F lengths_01 = t.length_0 * t.length_1;
+  // Both over S, which for a triangle seen almost edge-on is small together with the sine at c₀.
+  const F relative = side_of_0 / max(half.sin, max(F(T(1e-17)) * side_of_0, tiny));
+  const F versine = F(T(0.5)) * (lengths_01 - t.dot_01) / lengths_01;  // sin²(c/2)
+  const F azimuth_sin = fma(side_of_0, half.cos, -(cos_of_0 * half.sin));
+  const F azimuth_cos = fma(relative, versine, -fma(side_of_0, half.sin, half.cos * cos_of_0));
+  const F towards = select(t.determinant > zero, azimuth_sin, -azimuth_sin) / t.length_1;
+  const Vec<F> normal_of_arc = towards * cross(corner_1, normal_01) - azimuth_cos * normal_01;
+  const Vec<F> ray = spherical::turned(corner_1, t.length_1, normal_of_arc, length(normal_of_arc), tan_part, one);
+  // To the plane; along it, to roundings, the law of sines at least has the order of the distance.
+  const F slope = dot(t.normal, ray), least = F(T(16) * std::numeric_limits<T>::epsilon()) * length(t.normal);
+  const F farthest = max(t.length_0, max(t.length_1, t.length_2));
+  const F distance = min(select(abs(slope) > least, abs(t.determinant / slope), distance_by_sines), farthest);
+  return distance * ray;
 }
 
 }  // namespace spherical
@@ -173,21 +197,22 @@ inline TrianglePoint<F> sample_triangle_solid_angle(const Vec<F>& corner, const 
   F b0 = point.to_1 * end.to_0, b1 = point.to_0, b2 = point.to_1 * end.to_1;
   Vec<F> position = b0 * t.corner + b1 * corner_1 + b2 * corner_2;
   if (any_lane(wide)) {
-    const F squared = half.sin * half.sin;
-    const F azimuth_sin = half.sin * fma(side_of_0, half.cos, -(cos_of_0 * half.sin));
-    const F azimuth_cos =
-        fma(side_of_0, F(T(0.5)) * (lengths_01 - t.dot_01) / lengths_01 - squared, -(half.sin * half.cos * cos_of_0));
-    const F towards = select(t.determinant > zero, azimuth_sin, -azimuth_sin) / t.length_1;
-    const Vec<F> normal_of_arc = towards * cross(corner_1, normal_01) - azimuth_cos * normal_01;
-    const Vec<F> ray = spherical::turned(corner_1, t.length_1, normal_of_arc, length(normal_of_arc), tan_part, one);
-    position = spherical::either(wide, (t.determinant / dot(t.normal, ray)) * ray, position);
+    const Vec<F> turned = spherical::along_meridian(t, half, normal_01, side_of_0, cos_of_0, tan_part, point.distance);
+    position = spherical::either(wide, turned, position);
     const Vec<F> from_0 = position - t.corner, weight = (one / dot(t.normal, t.normal)) * t.normal;
-    const F toward_1 = min(max(dot(cross(from_0, t.edge_2), weight), zero), one);
-    const F toward_2 = min(max(dot(cross(t.edge_1, from_0), weight), zero), one - toward_1);
+    const F to_1 = dot(cross(from_0, t.edge_2), weight), to_2 = dot(cross(t.edge_1, from_0), weight);
+    const F toward_1 = min(max(to_1, zero), one), toward_2 = min(max(to_2, zero), one - toward_1);
+    // What roundings put outside is brought back to the edge.
+    const auto outside = wide & ((to_1 != toward_1) | (to_2 != toward_2));
+    position = spherical::either(outside, t.corner + toward_1 * t.edge_1 + toward_2 * t.edge_2, position);
     b1 = select(wide, toward_1, b1), b2 = select(wide, toward_2, b2);
     b0 = select(wide, one - toward_1 - toward_2, b0);
   }
-  return {(one / t.unit) * position, b0, b1, b2, t.solid_angle};
+  const auto seen = t.solid_angle > zero;
+  const F third(T(1) / T(3));
+  const Vec<F> middle = t.corner + third * (t.edge_1 + t.edge_2);
+  return {(one / t.unit) * spherical::either(seen, position, middle), select(seen, b0, third), select(seen, b1, third),
+          select(seen, b2, third), t.solid_angle};
 }
 
 }  // namespace halfslope

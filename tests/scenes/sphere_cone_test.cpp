@@ -169,6 +169,28 @@ TYPED_TEST(SphereCone, TheDensityAloneIsTheOneDrawnWith) {
   }
 }
 
+// From 1e-15 of its distance to touching, from inside to its middle: finite, and of the sphere.
+TYPED_TEST(SphereCone, AtAllSizesPointsAreOfTheSphere) {
+  using T = TypeParam;
+  Coordinates<T> random(13);
+  const T eps = std::numeric_limits<T>::epsilon();
+  for (int exponent = -50; exponent <= 50; ++exponent) {
+    for (int k = 0; k < 40; ++k) {
+      const T distance = exponent <= 0 ? T(1)
+                         : k % 2       ? 1 + std::ldexp(T(1), -exponent)
+                                       : 1 - std::ldexp(T(1), -exponent);
+      const T radius = exponent <= 0 ? std::ldexp(T(1), exponent) : T(1);
+      const T u1 = k % 3 == 0 ? 1 - eps / 2 : random(), u2 = random();
+      const SpherePoint<T> p = sample_sphere_solid_angle<T>({T(0), -distance, T(0)}, radius, u1, u2);
+      EXPECT_NEAR(dot(p.direction, p.direction), 1, 8 * eps) << exponent << ' ' << k;
+      EXPECT_NEAR(dot(p.outward, p.outward), 1, 8 * eps) << exponent << ' ' << k;
+      EXPECT_GT(p.pdf, 0);
+      EXPECT_TRUE(std::isfinite(p.pdf));
+      EXPECT_LE(std::fabs(p.distance - distance), radius * (1 + 8 * eps) + 2 * eps) << exponent << ' ' << k;
+    }
+  }
+}
+
 TYPED_TEST(SphereCone, PacketsDrawWhatScalarsDo) {
   using T = TypeParam;
   using F = NativePacket<T>;

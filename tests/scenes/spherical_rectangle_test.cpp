@@ -218,6 +218,33 @@ TYPED_TEST(SphericalRectangle, EdgeOnItIsSeenUnderNoAngle) {
   }
 }
 
+// However near to the plane the receiver is, inside the rectangle or out, all numbers are finite and of the rectangle.
+TYPED_TEST(SphericalRectangle, AtAllHeightsPointsAreOfTheRectangle) {
+  using T = TypeParam;
+  const T last = 1 - std::numeric_limits<T>::epsilon() / 2;
+  Coordinates<T> random(13);
+  for (int exponent = 3; exponent > -110; --exponent) {
+    const T z = std::ldexp(T(1), exponent);
+    for (int k = 0; k < 60; ++k) {
+      const Vec<T> corner = {2 * random() - T(1.5), 2 * random() - T(1.5), z};
+      const Vec<T> edge_1 = {std::ldexp(random() + T(0.5), -(k % 7)), T(0), T(0)},
+                   edge_2 = {T(0), random() + T(0.5), T(0)};
+      const T u1 = k % 3 == 0 ? last : k % 4 == 0 ? T(0) : random(), u2 = k % 5 == 0 ? last : random();
+      const RectanglePoint<T> p = sample_rectangle_solid_angle(corner, edge_1, edge_2, u1, u2);
+      EXPECT_GE(p.solid_angle, 0);
+      EXPECT_LE(p.solid_angle, T(6.2831855));
+      for (const T share : {p.a, p.b}) {
+        EXPECT_GE(share, 0) << z;
+        EXPECT_LE(share, 1) << z;
+      }
+      const T rounding = 16 * std::numeric_limits<T>::epsilon();
+      EXPECT_NEAR(p.position.x, corner.x + p.a * edge_1.x, rounding) << z << ' ' << k;
+      EXPECT_NEAR(p.position.y, corner.y + p.b * edge_2.y, rounding) << z << ' ' << k;
+      EXPECT_NEAR(p.position.z, z, rounding * z);
+    }
+  }
+}
+
 TYPED_TEST(SphericalRectangle, PacketsDrawWhatScalarsDo) {
   using T = TypeParam;
   using F = NativePacket<T>;

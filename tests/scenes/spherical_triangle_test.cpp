@@ -279,8 +279,10 @@ TYPED_TEST(SphericalTriangle, EdgeOnOrWithoutAreaItIsSeenUnderNoAngle) {
   const T zero = 0, one = 1;
   const struct {
     Vec<T> corner, edge_1, edge_2;
-  } cases[] = {{{one, zero, zero}, {one, zero, zero}, {zero, one, zero}},       // the receiver in its plane
-               {{one, zero, one}, {one, zero, zero}, {one + one, zero, zero}},  // no area
+  } cases[] = {{{one, zero, zero}, {one, zero, zero}, {zero, one, zero}},  // the receiver in its plane, beside it
+               {{-one, -one, zero}, {one + one, zero, zero}, {one, 3 * one, zero}},    // in the middle of it
+               {{-one, zero, zero}, {one + one, zero, zero}, {one, one, zero}},        // on its edge
+               {{-one, zero, one}, {one + one, zero, zero}, {one + one, zero, zero}},  // no area
                {{one, zero, one}, {zero, zero, zero}, {zero, one, zero}},
                {{zero, zero, zero}, {one, zero, zero}, {zero, one, zero}}};  // the receiver in its corner
   for (const auto& c : cases) {
@@ -290,23 +292,59 @@ TYPED_TEST(SphericalTriangle, EdgeOnOrWithoutAreaItIsSeenUnderNoAngle) {
   }
 }
 
+// However near to the plane the receiver is, inside the triangle or out, all numbers are finite and of the triangle.
+TYPED_TEST(SphericalTriangle, AtAllHeightsPointsAreOfTheTriangle) {
+  using T = TypeParam;
+  const T last = 1 - std::numeric_limits<T>::epsilon() / 2;
+  Coordinates<T> random(13);
+  for (int exponent = 0; exponent > -110; --exponent) {
+    const T z = std::ldexp(T(1), exponent);
+    for (int k = 0; k < 60; ++k) {
+      const Vec<T> corner = {random() - T(0.8), random() - T(0.8), z};
+      const Vec<T> edge_1 = {random() + T(0.5), random(), T(0)}, edge_2 = {-random(), random() + T(0.5), T(0)};
+      const T u1 = k % 3 == 0 ? last : random(), u2 = k % 5 == 0 ? last : random();
+      const TrianglePoint<T> p = sample_triangle_solid_angle(corner, edge_1, edge_2, u1, u2);
+      EXPECT_GE(p.solid_angle, 0);
+      EXPECT_LE(p.solid_angle, T(6.2831855));
+      for (const T b : {p.b0, p.b1, p.b2}) {
+        EXPECT_GE(b, 0) << z;
+        EXPECT_LE(b, 1) << z;
+      }
+      for (const T x : {p.position.x, p.position.y, p.position.z}) EXPECT_LE(std::fabs(x), 4) << z << ' ' << k;
+    }
+  }
+}
+
 TYPED_TEST(SphericalTriangle, PacketsDrawWhatScalarsDo) {
   using T = TypeParam;
   using F = NativePacket<T>;
   constexpr auto kLanes = static_cast<std::size_t>(kWidth<F>);
+  struct alignas(64) Lanes : std::array<T, kLanes> {};
+  std::array<Lanes, 9> in;
   alignas(64) std::array<T, kLanes> u1, u2, x, b1;
   Coordinates<T> random(5);
-  for (const Case& of : triangles()) {
-    for (std::size_t l = 0; l < kLanes; ++l) u1[l] = random(), u2[l] = random();
-    const auto packet = [](const Vec<T>& v) { return Vec<F>{F(v.x), F(v.y), F(v.z)}; };
-    const Vec<T> a = as<T>(of.corners[0]), e1 = as<T>(of.corners[1]) - a, e2 = as<T>(of.corners[2]) - a;
+  // A lane's neighbours are other triangles.
+  for (std::size_t first = 0; first < triangles().size(); ++first) {
+    std::array<std::array<Vec<T>, 3>, kLanes> of_lane;
+    for (std::size_t l = 0; l < kLanes; ++l) {
+      const Corners& c = triangles()[(first + l) % triangles().size()].corners;
+      of_lane[l] = {as<T>(c[0]), as<T>(c[1]) - as<T>(c[0]), as<T>(c[2]) - as<T>(c[0])};
+      for (std::size_t k = 0; k < 3; ++k) {
+        in[3 * k][l] = of_lane[l][k].x, in[3 * k + 1][l] = of_lane[l][k].y, in[3 * k + 2][l] = of_lane[l][k].z;
+      }
+      u1[l] = random(), u2[l] = random();
+    }
+    const auto packet = [&](std::size_t k) {
+      return Vec<F>{load<F>(in[3 * k].data()), load<F>(in[3 * k + 1].data()), load<F>(in[3 * k + 2].data())};
+    };
     const TrianglePoint<F> p =
-        sample_triangle_solid_angle(packet(a), packet(e1), packet(e2), load<F>(u1.data()), load<F>(u2.data()));
+        sample_triangle_solid_angle(packet(0), packet(1), packet(2), load<F>(u1.data()), load<F>(u2.data()));
     store(x.data(), p.position.x), store(b1.data(), p.b1);
     for (std::size_t l = 0; l < kLanes; ++l) {
-      const TrianglePoint<T> alone = sample_triangle_solid_angle(a, e1, e2, u1[l], u2[l]);
-      EXPECT_EQ(x[l], alone.position.x) << of.name;
-      EXPECT_EQ(b1[l], alone.b1) << of.name;
+      const TrianglePoint<T> alone =
+          sample_triangle_solid_angle(of_lane[l][0], of_lane[l][1], of_lane[l][2], u1[l], u2[l]);
+      EXPECT_EQ(x[l], alone.position.x) << triangles()[(first + l) % triangles().size()].name;
+      EXPECT_EQ(b1[l], alone.b1) << triangles()[(first + l) % triangles().size()].name;
     }
   }
 }
