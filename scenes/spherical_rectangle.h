@@ -120,7 +120,7 @@ inline Between<F> split_x(const Rectangle<F>& q, const F& left) {
     return select(angle > right, fma(sin_delta, of_rest.cos, -(cos_delta * of_rest.sin)), of_angle.sin);
   };
   struct End {
-    F sin_theta, w, kappa, kappa_turned;
+    F sin_theta, root, kappa, kappa_turned;  // √W, and κ and κ̌ over it: grazing, W leaves binary32
   };
   const auto end = [&](const F& angle, const F& gap) {
     const F near_angle = half * gap, far_angle = max(near_angle + angle, zero);  // ε/2 and ε̄/2
@@ -131,15 +131,15 @@ inline Between<F> split_x(const Rectangle<F>& q, const F& left) {
     const F p_bar = select(around & !before, fma(g0, near.cos, -(b0 * s)), fma(g1, far.cos, b1 * s_bar));
     const SinCos<F> whole_gap = {two * near.sin * near.cos, one - two * near.sin * near.sin};
     const F size = sine_of(angle, sin_cos(abs(angle)), whole_gap), sine = select(before, -size, size);
-    return End{sine, max(F(T(4)) * (s * p) * (s_bar * p_bar), tiny), fma(g1, sine, two * s * p_bar),
-               fma(g0, sine, two * s * p)};
+    const F root = max(two * sqrt(s * p) * sqrt(s_bar * p_bar), tiny);
+    return End{sine, root, fma(g1, sine, two * s * p_bar) / root, fma(g0, sine, two * s * p) / root};
   };
   const End here = end(theta, epsilon), last = end(theta_1, epsilon_1);
-  const F x = q.z * here.sin_theta / sqrt(here.w), x1 = q.z * last.sin_theta / sqrt(last.w);
+  const F x = q.z * here.sin_theta / here.root, x1 = q.z * last.sin_theta / last.root;
   const F mean = max(theta_1 - half * left, zero);
   const F sine_of_mean = sine_of(mean, sin_cos(mean), sin_cos(fma(half, left, epsilon_1)));
   const F product = fma(here.kappa, last.kappa_turned, last.kappa * here.kappa_turned);
-  const F squares = two * z2 * sine_of_mean * (sin_cos(half * left).sin / last.w) * (product / here.w);
+  const F squares = two * (q.z * sine_of_mean / last.root) * (q.z * sin_cos(half * left).sin / here.root) * product;
   const F way = select(theta > zero, squares / max(x1 + x, tiny), q.x1 - x);
   const F share = min(max(way / q.width, zero), one);
   return {share, select(q.width > q.z, min(max(x, q.x0), q.x1), fma(-share, q.width, q.x1))};
@@ -206,15 +206,16 @@ inline F rectangle_solid_angle(const Vec<F>& corner, const Vec<F>& edge_1, const
 }
 
 /// A point of that rectangle, its direction uniform in solid angle, for u₁ and u₂ in [0, 1): a grows with u₁ and b with
-/// u₂.
+/// u₂. Below 10⁻¹⁷ of its size the map, not the solid angle, is that of this height.
 template <class F>
 inline RectanglePoint<F> sample_rectangle_solid_angle(const Vec<F>& corner, const Vec<F>& edge_1, const Vec<F>& edge_2,
                                                       const F& u1, const F& u2) {
   using T = scalar_t<F>;
   const F zero(T(0)), one(T(1)), half(T(0.5));
   const auto placed = spherical::place_rectangle(corner, edge_1, edge_2);
-  const spherical::Rectangle<F>& q = placed.own;
+  spherical::Rectangle<F> q = placed.own;
   const F all = spherical::solid_angle(q);
+  q.z = max(q.z, F(T(1e-17)));
   const auto x = spherical::split_x(q, select(placed.left, u1, one - u1) * all);
   const auto y = spherical::split_y(q, x.at, select(placed.under, u2, one - u2));
   const F to_u = x.at / q.unit, to_v = y.at / q.unit;
