@@ -118,7 +118,7 @@ template <class F>
 inline Vec<F> along_meridian(const Triangle<F>& t, const SinCos<F>& half, const Vec<F>& normal_01, const F& side_of_0,
                              const F& cos_of_0, const F& tan_part, const F& distance_by_sines) {
   using T = scalar_t<F>;
-  const F zero(T(0)), one(T(1)), tiny(std::numeric_limits<T>::min());
+  const F one(T(1)), tiny(std::numeric_limits<T>::min());
   const Vec<F> corner_1 = t.corner + t.edge_1;
   const F lengths_01 = t.length_0 * t.length_1;
   // Both over S, which for a triangle seen almost edge-on is small together with the sine at c₀.
@@ -126,7 +126,7 @@ inline Vec<F> along_meridian(const Triangle<F>& t, const SinCos<F>& half, const 
   const F versine = F(T(0.5)) * (lengths_01 - t.dot_01) / lengths_01;  // sin²(c/2)
   const F azimuth_sin = fma(side_of_0, half.cos, -(cos_of_0 * half.sin));
   const F azimuth_cos = fma(relative, versine, -fma(side_of_0, half.sin, half.cos * cos_of_0));
-  const F towards = select(t.determinant > zero, azimuth_sin, -azimuth_sin) / t.length_1;
+  const F towards = select(t.determinant > F(T(0)), azimuth_sin, -azimuth_sin) / t.length_1;
   const Vec<F> normal_of_arc = towards * cross(corner_1, normal_01) - azimuth_cos * normal_01;
   const Vec<F> ray = spherical::turned(corner_1, t.length_1, normal_of_arc, length(normal_of_arc), tan_part, one);
   // To the plane; along it, to roundings, the law of sines at least has the order of the distance.
