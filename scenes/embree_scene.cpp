@@ -3,6 +3,7 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -69,9 +70,19 @@ double hit_lane(const Shape& shape, RTCRayN* rays, unsigned n, unsigned i) {
   return hit(shape, ray, RTCRayN_tnear(rays, n, i) * length) / length;
 }
 
+/// A shape as Embree's callbacks see it.
+template <class Shape>
+struct UserShape {
+  Shape shape;
+  double margin;  ///< added to its box
+};
+
 template <class Shape>
 void bounds_callback(const RTCBoundsFunctionArguments* arguments) {
-  const Box box = box_of(*static_cast<const Shape*>(arguments->geometryUserPtr));
+  const auto& user = *static_cast<const UserShape<Shape>*>(arguments->geometryUserPtr);
+  Box box = box_of(user.shape);
+  box.lower.array() -= user.margin;
+  box.upper.array() += user.margin;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const auto down = [](double x) { return std::nextafter(static_cast<float>(x), -kInfinity); };
   const auto up = [](double x) { return std::nextafter(static_cast<float>(x), kInfinity); };
@@ -86,7 +97,8 @@ void intersect_callback(const RTCIntersectFunctionNArguments* arguments) {
   RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, n);
   for (unsigned i = 0; i < n; ++i) {
     if (!arguments->valid[i]) continue;
-    const auto t = static_cast<float>(hit_lane(*static_cast<const Shape*>(arguments->geometryUserPtr), rays, n, i));
+    const auto t = static_cast<float>(
+        hit_lane(static_cast<const UserShape<Shape>*>(arguments->geometryUserPtr)->shape, rays, n, i));
     if (!(t < RTCRayN_tfar(rays, n, i))) continue;
     RTCRayN_tfar(rays, n, i) = t;
     RTCHitN_u(hits, n, i) = RTCHitN_v(hits, n, i) = 0;
@@ -100,8 +112,8 @@ void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
   const unsigned n = arguments->N;
   for (unsigned i = 0; i < n; ++i) {
     if (!arguments->valid[i]) continue;
-    const auto t =
-        static_cast<float>(hit_lane(*static_cast<const Shape*>(arguments->geometryUserPtr), arguments->ray, n, i));
+    const auto t = static_cast<float>(
+        hit_lane(static_cast<const UserShape<Shape>*>(arguments->geometryUserPtr)->shape, arguments->ray, n, i));
     if (t < RTCRayN_tfar(arguments->ray, n, i))
       RTCRayN_tfar(arguments->ray, n, i) = -std::numeric_limits<float>::infinity();
   }
@@ -123,7 +135,9 @@ struct EmbreeScene::Impl {
 
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
-  std::vector<decltype(Primitive::shape)> shapes;  ///< meshes are empty here
+  using UserShapes = std::variant<std::monostate, UserShape<Sphere>, UserShape<Flat>, UserShape<Cylinder>>;
+  std::vector<UserShapes> shapes;  ///< a mesh is empty here
+  double margin = 0;               ///< of their boxes
   std::vector<Corners> corners;
   std::string error;
   float extent = 0;  ///< the longest side of the scene's box
@@ -176,10 +190,10 @@ void EmbreeScene::Impl::add(const std::shared_ptr<const Mesh>& mesh, unsigned id
 
 template <class Shape>
 void EmbreeScene::Impl::add(const Shape& shape, unsigned id) {
-  shapes[id] = shape;
+  shapes[id] = UserShape<Shape>{shape, margin};
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
   rtcSetGeometryUserPrimitiveCount(geometry, 1);
-  rtcSetGeometryUserData(geometry, &std::get<Shape>(shapes[id]));
+  rtcSetGeometryUserData(geometry, &std::get<UserShape<Shape>>(shapes[id]));
   rtcSetGeometryBoundsFunction(geometry, bounds_callback<Shape>, nullptr);
   rtcSetGeometryIntersectFunction(geometry, intersect_callback<Shape>);
   rtcSetGeometryOccludedFunction(geometry, occluded_callback<Shape>);
@@ -187,12 +201,17 @@ void EmbreeScene::Impl::add(const Shape& shape, unsigned id) {
 }
 
 EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
+  double largest = scene.sensor.origin.cwiseAbs().maxCoeff();
+  for (const Ray& ray : scene.sensor.rays) largest = std::max(largest, ray.origin.cwiseAbs().maxCoeff());
   for (const Primitive& primitive : scene.primitives) {
     const double reach = middle(primitive).cwiseAbs().maxCoeff() + extent(primitive);
     if (!(reach < kReach))
       fail(ExitCode::kBadInput, "shape '{}' reaches {} from the origin, allowed: less than {}", primitive.id, reach,
            kReach);
+    largest = std::max(largest, reach);
   }
+  // Boxes of shapes that are no mesh are met in binary32 without the robust mode's care: a ray from x misses by 2⁻²³ x.
+  impl_->margin = 4 * 0x1p-23 * largest;
   impl_->device = rtcNewDevice(device_configuration());
   if (!impl_->device)
     fail(ExitCode::kBadInput, "Embree, a device: error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
@@ -215,38 +234,76 @@ EmbreeScene::~EmbreeScene() = default;
 
 namespace {
 
-/// Whether the active rays go much the same way from much the same place: Embree then takes them through the hierarchy
-/// together, which is faster by half, and slower by as much where it is not so. Results do not depend on it.
-bool goes_together(const RayPacket& packet, float extent) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const auto spread = [&](const float* values) {
-    float low = kInfinity, high = -kInfinity;
-    for (int i = 0; i < RayPacket::kLanes; ++i) {
-      low = std::min(low, packet.active[i] ? values[i] : kInfinity);
-      high = std::max(high, packet.active[i] ? values[i] : -kInfinity);
+/// Makes a packet ready for Embree, which looks at tnear ≤ tfar rather than at the mask it is given, and stops the
+/// program at a ray that is not finite. Puts the intervals of lanes that are not traced back in the end.
+class Traced {
+ public:
+  explicit Traced(RayPacket& packet) : packet_(packet) {
+    for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+      packet.time[i] = 0;
+      packet.mask[i] = ~std::uint32_t{0};
+      packet.flags[i] = 0;
+      constexpr auto kFar = static_cast<float>(kReach);
+      const auto near = [&](float x, float y, float z) {
+        return std::abs(x) < kFar && std::abs(y) < kFar && std::abs(z) < kFar;
+      };
+      const bool traced = packet.active[i] && near(packet.ox[i], packet.oy[i], packet.oz[i]) &&
+                          near(packet.dx[i], packet.dy[i], packet.dz[i]) && packet.tnear[i] >= 0 &&
+                          packet.tnear[i] <= packet.tfar[i];
+      mask_[i] = traced ? -1 : 0;
+      tnear_[i] = packet.tnear[i];
+      tfar_[i] = packet.tfar[i];
+      if (traced) continue;
+      packet.tnear[i] = 1;
+      packet.tfar[i] = -1;
     }
-    return high - low;
-  };
-  return std::max({spread(packet.dx), spread(packet.dy), spread(packet.dz)}) < 0.05F &&
-         std::max({spread(packet.ox), spread(packet.oy), spread(packet.oz)}) < 0.02F * extent;
-}
+  }
+  Traced(const Traced&) = delete;
+  Traced& operator=(const Traced&) = delete;
+  ~Traced() {
+    for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+      if (mask_[i]) continue;
+      packet_.tnear[i] = tnear_[i];
+      packet_.tfar[i] = tfar_[i];
+    }
+  }
+
+  const int* mask() const { return mask_.data(); }
+
+  /// Whether the rays go much the same way from much the same place: Embree then takes them through the hierarchy
+  /// together, which is faster by half, and slower by as much where it is not so.
+  bool go_together(float extent) const {
+    const auto spread = [&](const float* values) {
+      constexpr float kInfinity = std::numeric_limits<float>::infinity();
+      float low = kInfinity, high = -kInfinity;
+      for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+        low = std::min(low, mask_[i] ? values[i] : kInfinity);
+        high = std::max(high, mask_[i] ? values[i] : -kInfinity);
+      }
+      return high - low;
+    };
+    return std::max({spread(packet_.dx), spread(packet_.dy), spread(packet_.dz)}) < 0.05F &&
+           std::max({spread(packet_.ox), spread(packet_.oy), spread(packet_.oz)}) < 0.02F * extent;
+  }
+
+ private:
+  RayPacket& packet_;
+  alignas(64) std::array<std::int32_t, RayPacket::kLanes> mask_;
+  std::array<float, RayPacket::kLanes> tnear_, tfar_;
+};
 
 }  // namespace
 
 void EmbreeScene::first(RayPacket& packet) const {
-  for (int i = 0; i < RayPacket::kLanes; ++i) {
-    packet.time[i] = 0;
-    packet.mask[i] = ~std::uint32_t{0};
-    packet.flags[i] = 0;
-    packet.primitive[i] = -1;
-    packet.triangle[i] = 0;
-  }
+  const Traced traced(packet);
+  std::fill_n(packet.primitive, RayPacket::kLanes, -1);
+  std::fill_n(packet.triangle, RayPacket::kLanes, 0);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  if (impl_->together && goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
+  if (impl_->together && traced.go_together(impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(traced.mask(), impl_->scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
   for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-    if (!packet.active[i] || packet.primitive[i] < 0) continue;
+    if (packet.primitive[i] < 0) continue;
     const Ray ray{{packet.ox[i], packet.oy[i], packet.oz[i]}, {packet.dx[i], packet.dy[i], packet.dz[i]}};
     const auto point =
         impl_->meet(static_cast<std::size_t>(packet.primitive[i]), static_cast<std::size_t>(packet.triangle[i]), ray);
@@ -258,15 +315,11 @@ void EmbreeScene::first(RayPacket& packet) const {
 }
 
 void EmbreeScene::occluded(RayPacket& packet) const {
-  for (int i = 0; i < RayPacket::kLanes; ++i) {
-    packet.time[i] = 0;
-    packet.mask[i] = ~std::uint32_t{0};
-    packet.flags[i] = 0;
-  }
+  const Traced traced(packet);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
-  if (impl_->together && goes_together(packet, impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcOccluded16(packet.active, impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
+  if (impl_->together && traced.go_together(impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcOccluded16(traced.mask(), impl_->scene, &context, reinterpret_cast<RTCRay16*>(&packet));
 }
 
 void EmbreeScene::first_of(const void* scene, RayPacket* packet) {

@@ -9,8 +9,9 @@
 
 namespace halfslope {
 
-/// The shapes of a scene in a bounding volume hierarchy: meshes as Embree's triangles (watertight: its robust mode),
-/// the others by our own double-precision code (scenes/shape_hits.h). It keeps its own copy of them.
+/// The shapes of a scene in a bounding volume hierarchy: meshes as Embree's triangles in its robust mode, the others
+/// by our own double-precision code (scenes/shape_hits.h). It keeps its own copy of them. Between triangles that share
+/// an edge no ray passes but, now and then, one that is aimed at a corner to the last bit.
 ///
 /// Results are the same bits for any number of threads and on every machine of one instruction set class: Embree is
 /// held to AVX2 where the class is "fma", to SSE2 for the baseline, and finds the primitive alone; the distance and the
@@ -28,6 +29,7 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   ~EmbreeScene();
 
+  /// As scenes/ray_packet.h says. A ray with a coordinate of 1e18 or more, or one that is not a number, meets nothing.
   void first(RayPacket& packet) const;
   void occluded(RayPacket& packet) const;
 
