@@ -8,12 +8,12 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/error.h"
 #include "core/kernel_library.h"
+#include "scenes/packet_triangles.h"
 #include "scenes/shape_hits.h"
 
 namespace halfslope {
@@ -122,23 +122,15 @@ void occluded_callback(const RTCOccludedFunctionNArguments* arguments) {
 }  // namespace
 
 struct EmbreeScene::Impl {
-  /// A mesh's buffers, which are Embree's; null for other shapes.
-  struct Corners {
-    const float* positions = nullptr;
-    const std::uint32_t* triangles = nullptr;
-
-    Vec3 operator()(std::size_t triangle, std::size_t k) const {
-      const float* p = positions + std::size_t{3} * triangles[3 * triangle + k];
-      return {p[0], p[1], p[2]};
-    }
-  };
+  /// The three corners of a mesh's triangle, side by side: reading them again after a hit waits for memory once.
+  using Triangle = std::array<float, 9>;
 
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   using UserShapes = std::variant<std::monostate, UserShape<Sphere>, UserShape<Flat>, UserShape<Cylinder>>;
-  std::vector<UserShapes> shapes;  ///< a mesh is empty here
-  double margin = 0;               ///< of their boxes
-  std::vector<Corners> corners;
+  std::vector<UserShapes> shapes;             ///< a mesh is empty here
+  double margin = 0;                          ///< of their boxes
+  std::vector<std::vector<Triangle>> meshes;  ///< of each primitive; empty where it is no mesh
   std::string error;
   float extent = 0;  ///< the longest side of the scene's box
   /// Whether rays may be taken through the hierarchy together. By AVX2 a ray then meets what it meets alone; by SSE2,
@@ -167,25 +159,43 @@ struct EmbreeScene::Impl {
     rtcAttachGeometryByID(scene, geometry, id);
     rtcReleaseGeometry(geometry);
   }
-  std::optional<TrianglePoint> meet(std::size_t primitive, std::size_t triangle, const Ray& ray) const {
-    const Corners& of = corners[primitive];
-    if (!of.positions) return std::nullopt;
-    return meet_triangle(of(triangle, 0), of(triangle, 1), of(triangle, 2), ray);
+  /// The corners of the triangles that a packet met. All are asked for before the first is read: they may be far away.
+  void gather(const RayPacket& packet, PacketTriangles& triangles) const {
+    std::array<const Triangle*, RayPacket::kLanes> met = {};
+    for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+      if (packet.primitive[i] < 0) continue;
+      const std::vector<Triangle>& mesh = meshes[static_cast<std::size_t>(packet.primitive[i])];
+      if (mesh.empty()) continue;
+      met[i] = &mesh[static_cast<std::size_t>(packet.triangle[i])];
+      __builtin_prefetch(met[i]);
+      triangles.present[i] = -1;
+    }
+    for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
+      if (!met[i]) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangles.x[k][i] = static_cast<double>((*met[i])[3 * k]);
+        triangles.y[k][i] = static_cast<double>((*met[i])[3 * k + 1]);
+        triangles.z[k][i] = static_cast<double>((*met[i])[3 * k + 2]);
+      }
+    }
   }
 };
 
 void EmbreeScene::Impl::add(const std::shared_ptr<const Mesh>& mesh, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const auto buffer = [&](RTCBufferType type, RTCFormat format, const auto& values) {
+  const auto copy = [&](RTCBufferType type, RTCFormat format, const auto& values) {
     void* memory = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(values[0]), values.size());
     check("a mesh");
     std::memcpy(memory, values.data(), values.size() * sizeof(values[0]));
-    return memory;
   };
-  corners[id].positions = static_cast<const float*>(buffer(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh->positions));
-  corners[id].triangles =
-      static_cast<const std::uint32_t*>(buffer(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles));
+  copy(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh->positions);
+  copy(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh->triangles);
   attach(geometry, id);
+  meshes[id].reserve(mesh->triangles.size());
+  for (const auto& [i, j, k] : mesh->triangles) {
+    const Mesh::Point &p = mesh->positions[i], &q = mesh->positions[j], &r = mesh->positions[k];
+    meshes[id].push_back({p[0], p[1], p[2], q[0], q[1], q[2], r[0], r[1], r[2]});
+  }
 }
 
 template <class Shape>
@@ -219,7 +229,7 @@ EmbreeScene::EmbreeScene(const Scene& scene) : impl_(std::make_unique<Impl>()) {
   impl_->scene = rtcNewScene(impl_->device);
   rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
   impl_->shapes.resize(scene.primitives.size());
-  impl_->corners.resize(scene.primitives.size());
+  impl_->meshes.resize(scene.primitives.size());
   for (std::size_t i = 0; i < scene.primitives.size(); ++i) {
     std::visit([&](const auto& shape) { impl_->add(shape, static_cast<unsigned>(i)); }, scene.primitives[i].shape);
   }
@@ -239,32 +249,29 @@ namespace {
 class Traced {
  public:
   explicit Traced(RayPacket& packet) : packet_(packet) {
+    constexpr auto kFar = static_cast<float>(kReach);
+    // Without branches, so that it is done several lanes at a time.
     for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-      packet.time[i] = 0;
-      packet.mask[i] = ~std::uint32_t{0};
-      packet.flags[i] = 0;
-      constexpr auto kFar = static_cast<float>(kReach);
-      const auto near = [&](float x, float y, float z) {
-        return std::abs(x) < kFar && std::abs(y) < kFar && std::abs(z) < kFar;
-      };
-      const bool traced = packet.active[i] && near(packet.ox[i], packet.oy[i], packet.oz[i]) &&
-                          near(packet.dx[i], packet.dy[i], packet.dz[i]) && packet.tnear[i] >= 0 &&
-                          packet.tnear[i] <= packet.tfar[i];
+      const bool near = (std::abs(packet.ox[i]) < kFar) & (std::abs(packet.oy[i]) < kFar) &
+                        (std::abs(packet.oz[i]) < kFar) & (std::abs(packet.dx[i]) < kFar) &
+                        (std::abs(packet.dy[i]) < kFar) & (std::abs(packet.dz[i]) < kFar);
+      const bool traced = (packet.active[i] != 0) & near & (packet.tnear[i] >= 0) & (packet.tnear[i] <= packet.tfar[i]);
       mask_[i] = traced ? -1 : 0;
       tnear_[i] = packet.tnear[i];
       tfar_[i] = packet.tfar[i];
-      if (traced) continue;
-      packet.tnear[i] = 1;
-      packet.tfar[i] = -1;
+      packet.tnear[i] = traced ? packet.tnear[i] : 1;
+      packet.tfar[i] = traced ? packet.tfar[i] : -1;
+      packet.time[i] = 0;
+      packet.mask[i] = ~std::uint32_t{0};
+      packet.flags[i] = 0;
     }
   }
   Traced(const Traced&) = delete;
   Traced& operator=(const Traced&) = delete;
   ~Traced() {
     for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-      if (mask_[i]) continue;
       packet_.tnear[i] = tnear_[i];
-      packet_.tfar[i] = tfar_[i];
+      packet_.tfar[i] = mask_[i] ? packet_.tfar[i] : tfar_[i];
     }
   }
 
@@ -273,20 +280,20 @@ class Traced {
   /// Whether the rays go much the same way from much the same place: Embree then takes them through the hierarchy
   /// together, which is faster by half, and slower by as much where it is not so.
   bool go_together(float extent) const {
-    const auto spread = [&](const float* values) {
-      constexpr float kInfinity = std::numeric_limits<float>::infinity();
-      float low = kInfinity, high = -kInfinity;
-      for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-        low = std::min(low, mask_[i] ? values[i] : kInfinity);
-        high = std::max(high, mask_[i] ? values[i] : -kInfinity);
-      }
-      return high - low;
+    const auto first = static_cast<std::size_t>(std::find(mask_.begin(), mask_.end(), -1) - mask_.begin());
+    if (first == mask_.size()) return false;
+    const auto near = [&](const float* values, float distance) {
+      int far = 0;
+      for (std::size_t i = 0; i < RayPacket::kLanes; ++i)
+        far += mask_[i] & static_cast<int>(std::abs(values[i] - values[first]) > distance);
+      return far == 0;
     };
-    return std::max({spread(packet_.dx), spread(packet_.dy), spread(packet_.dz)}) < 0.05F &&
-           std::max({spread(packet_.ox), spread(packet_.oy), spread(packet_.oz)}) < 0.02F * extent;
+    return near(packet_.dx, kTurn) && near(packet_.dy, kTurn) && near(packet_.dz, kTurn) &&
+           near(packet_.ox, 0.01F * extent) && near(packet_.oy, 0.01F * extent) && near(packet_.oz, 0.01F * extent);
   }
 
  private:
+  static constexpr float kTurn = 0.03F;
   RayPacket& packet_;
   alignas(64) std::array<std::int32_t, RayPacket::kLanes> mask_;
   std::array<float, RayPacket::kLanes> tnear_, tfar_;
@@ -302,16 +309,9 @@ void EmbreeScene::first(RayPacket& packet) const {
   rtcInitIntersectContext(&context);
   if (impl_->together && traced.go_together(impl_->extent)) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   rtcIntersect16(traced.mask(), impl_->scene, &context, reinterpret_cast<RTCRayHit16*>(&packet));
-  for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-    if (packet.primitive[i] < 0) continue;
-    const Ray ray{{packet.ox[i], packet.oy[i], packet.oz[i]}, {packet.dx[i], packet.dy[i], packet.dz[i]}};
-    const auto point =
-        impl_->meet(static_cast<std::size_t>(packet.primitive[i]), static_cast<std::size_t>(packet.triangle[i]), ray);
-    if (!point || !(point->distance > 0 && std::isfinite(point->distance))) continue;
-    packet.tfar[i] = static_cast<float>(point->distance);
-    packet.u[i] = static_cast<float>(point->u);
-    packet.v[i] = static_cast<float>(point->v);
-  }
+  PacketTriangles triangles;
+  impl_->gather(packet, triangles);
+  meet_triangles(triangles, packet);
 }
 
 void EmbreeScene::occluded(RayPacket& packet) const {

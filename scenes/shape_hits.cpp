@@ -97,14 +97,6 @@ TrianglePoint hit_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const
   return {t, v1 / whole, v2 / whole};
 }
 
-TrianglePoint meet_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Ray& ray) {
-  const auto [v0, v1, v2] = volumes(p0, p1, p2, ray);
-  const Vec3 normal = (p1 - p0).cross(p2 - p0);
-  const double whole = v0 + v1 + v2;
-  const double u = std::clamp(v1 / whole, 0.0, 1.0), v = std::clamp(v2 / whole, 0.0, 1.0 - u);
-  return {normal.dot(p0 - ray.origin) / normal.dot(ray.direction), u, v};
-}
-
 Vec3 first_tangent(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z()), a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
   return {1 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()};

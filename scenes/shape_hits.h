@@ -32,10 +32,6 @@ struct TrianglePoint {
 /// that no ray passes between them.
 TrianglePoint hit_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Ray& ray, double t_min = 0);
 
-/// Where the ray meets the plane of a triangle that it is known to hit, up to rounding: u and v are moved into the
-/// triangle, and nothing else is asked.
-TrianglePoint meet_triangle(const Vec3& p0, const Vec3& p1, const Vec3& p2, const Ray& ray);
-
 /// A unit vector perpendicular to the unit vector n, Mitsuba's first: where the u of a cylinder along n begins (T. Duff
 /// et al., "Building an Orthonormal Basis, Revisited", JCGT 6(1), 2017).
 Vec3 first_tangent(const Vec3& n);
