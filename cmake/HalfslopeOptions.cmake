@@ -14,6 +14,7 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O3")
 option(HALFSLOPE_BUILD_TESTS "Build the tests" ${PROJECT_IS_TOP_LEVEL})
 option(HALFSLOPE_BUILD_BENCHMARKS "Build the benchmarks" ${PROJECT_IS_TOP_LEVEL})
 option(HALFSLOPE_SANITIZE "Build with AddressSanitizer and UndefinedBehaviorSanitizer" OFF)
+option(HALFSLOPE_FUZZ "Build the fuzzers, which needs clang++; all code is then instrumented for them" OFF)
 
 add_library(halfslope_flags INTERFACE)
 # Contraction off: an fma stands where the code says fma, so every build gives the same bits.
@@ -26,6 +27,12 @@ endif()
 if(HALFSLOPE_SANITIZE)
   target_compile_options(halfslope_flags INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
     -fno-omit-frame-pointer)
+  target_link_options(halfslope_flags INTERFACE -fsanitize=address,undefined)
+endif()
+
+if(HALFSLOPE_FUZZ)
+  target_compile_options(halfslope_flags INTERFACE -fsanitize=fuzzer-no-link,address,undefined
+    -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
   target_link_options(halfslope_flags INTERFACE -fsanitize=address,undefined)
 endif()
 
