@@ -1,5 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that halfslope is built with, as root or through sudo; only those that are missing.
+#
+#   scripts/install-deps.sh [--long] [--list]
+#
+# --long adds what only `scripts/test.sh --long` needs; --list prints the packages and installs nothing.
 # docs/dependencies.md says why each is here.
 set -euo pipefail
 
@@ -8,15 +12,19 @@ packages=(
   libgtest-dev libgmock-dev libbenchmark-dev
   libeigen3-dev libnanoflann-dev libopenexr-dev libxsimd-dev libtbb-dev librandom123-dev
   libcli11-dev libtomlplusplus-dev libpugixml-dev libfmt-dev nlohmann-json3-dev libboost-dev
-  libpng-dev libfreetype-dev fonts-dejavu-core
+  libpng-dev libfreetype-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev
   clang-format qemu-user git ca-certificates
 )
 
-case "${1:-}" in
-  "") ;;
-  --list) printf '%s\n' "${packages[@]}"; exit 0 ;;
-  *) echo "usage: scripts/install-deps.sh [--list]" >&2; exit 2 ;;
-esac
+list=no
+for argument in "$@"; do
+  case "$argument" in
+    --long) packages+=(clang libclang-rt-dev) ;;
+    --list) list=yes ;;
+    *) echo "usage: scripts/install-deps.sh [--long] [--list]" >&2; exit 2 ;;
+  esac
+done
+if [[ $list == yes ]]; then printf '%s\n' "${packages[@]}"; exit 0; fi
 
 if ! command -v apt-get > /dev/null; then
   echo "install-deps: no apt-get here; install the like of these yourself and give --no-install: ${packages[*]}" >&2

@@ -3,7 +3,8 @@
 #
 #   scripts/test.sh [--no-install] [--long]
 #
-# Installs the Debian packages that are missing (--no-install skips that). --long adds the tests with the label `long`.
+# Installs the Debian packages that are missing (--no-install skips that). --long adds the tests with the label `long`, and
+# a minute of each fuzzer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -18,7 +19,9 @@ for argument in "$@"; do
   esac
 done
 
-if [[ $install == yes ]]; then scripts/install-deps.sh; fi
+deps=()
+if [[ $long == yes ]]; then deps=(--long); fi
+if [[ $install == yes ]]; then scripts/install-deps.sh "${deps[@]}"; fi
 launcher=()
 if command -v ccache > /dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
 cmake --preset release "${launcher[@]}"
@@ -26,4 +29,5 @@ cmake --build --preset release --parallel "$(nproc)"
 ctest --preset release --parallel "$(nproc)"
 if [[ $long == yes ]]; then
   ctest --test-dir build/release --output-on-failure --parallel "$(nproc)" --label-regex '^long$'
+  scripts/fuzz.sh
 fi
