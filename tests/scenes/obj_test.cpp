@@ -148,7 +148,7 @@ TEST(Obj, OnePositionWithManyNormalsIsReadInLinearTime) {
   }
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_EQ(parse_obj(text, "a.obj").positions.size(), 100002U);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));  // a minute if it were quadratic
 }
 
 }  // namespace
