@@ -1,131 +1,177 @@
 #include "scenes/loader.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
+#include <functional>
+#include <set>
 #include <vector>
 
 #include "core/atomic_file.h"
 #include "scenes/readers.h"
-#include "scenes/xml_reader.h"
 
 namespace halfslope {
+
+void Reading::ignore(const Properties& properties) {
+  const Element& object = properties.element();
+  for (const std::string& name : properties.unread()) {
+    ++ignored[fmt::format("{} of {} '{}'", name, object.tag(), object.attribute("type"))];
+  }
+}
+
 namespace {
 
-/// Scenes are five levels deep; the bound keeps a hostile file from exhausting the stack.
-constexpr int kMaxDepth = 64;
-
-/// Replaces each $name in the file's attributes by what a <default> above it gives, in document order as Mitsuba does.
-class Parameters {
- public:
-  void substitute(const Element& element, int depth) {
-    if (depth > kMaxDepth) element.error("elements are nested more than {} deep", kMaxDepth);
-    for (pugi::xml_attribute attribute : element.node().attributes()) {
-      const std::string_view text = attribute.value();
-      if (text.find('$') != std::string_view::npos) attribute.set_value(expand(element, text).c_str());
+/// What the file's path integrator is asked for; how any other renders is no part of what is integrated.
+void read_integrator(const Element& element, Scene& scene, Reading& reading) {
+  const std::string type = element.find("type").value_or("");
+  for (const Element& child : element.children()) {
+    const std::string name = child.find("name").value_or(child.tag());
+    if (type != "path" || (name != "max_depth" && name != "rr_depth")) {
+      ++reading.ignored[fmt::format("{} of integrator '{}'", name, type)];
+      continue;
     }
-    if (element.tag() == "default") {
-      element.allow_attributes({"name", "value"});
-      const std::string name = element.attribute("name");
-      if (name.empty()) element.error("the name of <default> is empty");
-      values_.emplace(name, element.attribute("value"));
+    child.allow_attributes({"name", "value"});
+    const double depth = child.numbers("value", 1)[0];
+    const bool whole = depth == std::trunc(depth) && depth < 1e9;
+    if (!whole || depth < (name == "max_depth" ? -1 : 1)) {
+      child.error("'{}' of integrator 'path' is {}, allowed: a whole number{}", name, depth,
+                  name == "max_depth" ? ", or -1 for no bound" : " from 1");
     }
-    for (const Element& child : element.children()) substitute(child, depth + 1);
+    if (name == "rr_depth") scene.rr_depth = static_cast<int>(depth);
+    if (name == "max_depth" && depth >= 0) scene.max_depth = static_cast<int>(depth);
   }
+}
+
+class SceneReader {
+ public:
+  SceneReader(const SceneFiles& files, const std::string& file) : reading_(files) {
+    scene_.name = std::filesystem::path(file).stem().string();
+  }
+
+  void read(const Element& element) {
+    const std::string tag = element.tag();
+    if (tag == "shape") {
+      ++shapes_;
+      scene_.primitives.push_back(read_shape(element, shapes_, reading_));
+    } else if (tag == "sensor") {
+      if (has_sensor_) element.error("a second <sensor>, allowed: one");
+      has_sensor_ = true;
+      scene_.sensor = read_sensor(element, reading_);
+    } else if (tag == "emitter") {
+      add_light(element);
+    } else if (tag == "bsdf") {
+      read_bsdf(element, reading_);  // one that no shape refers to is checked too
+    } else if (tag == "texture") {
+      read_texture(element, reading_);
+    } else if (tag == "integrator") {
+      read_integrator(element, scene_, reading_);
+    } else if (tag != "default" && tag != "path" && tag != "alias") {
+      element.unknown(
+          "element in <scene>", tag,
+          {"default", "include", "path", "alias", "integrator", "sensor", "texture", "bsdf", "emitter", "shape"});
+    }
+  }
+
+  Scene finish(const Element& root) {
+    if (!has_sensor_) root.error("the scene has no <sensor>, allowed: one");
+    if (shapes_ == 0) root.error("the scene has no <shape>, allowed: one or more");
+    return std::move(scene_);
+  }
+
+  const Reading& reading() const { return reading_; }
 
  private:
-  std::string expand(const Element& element, std::string_view text) const {
-    std::string expanded;
-    for (std::size_t at = 0; at < text.size();) {
-      if (text[at] != '$') {
-        expanded += text[at++];
-        continue;
-      }
-      // The longest name that fits: $radius_2 is not $radius.
-      const std::pair<const std::string, std::string>* best = nullptr;
-      for (const auto& entry : values_) {
-        const bool fits = text.substr(at + 1).starts_with(entry.first);
-        if (fits && (!best || entry.first.size() > best->first.size())) best = &entry;
-      }
-      if (!best) {
-        std::vector<std::string> names;
-        for (const auto& entry : values_) names.push_back("$" + entry.first);
-        element.unknown("parameter", text.substr(at), names);
-      }
-      expanded += best->second;
-      at += 1 + best->first.size();
+  void add_light(const Element& element) {
+    auto light = read_emitter(element, reading_);
+    if (auto* delta = std::get_if<DeltaLight>(&light)) {
+      scene_.delta_lights.push_back(*delta);
+      return;
     }
-    return expanded;
+    if (scene_.environment) element.error("a second light from all around, allowed: one constant or envmap");
+    scene_.environment = std::get<Environment>(std::move(light));
   }
 
-  std::map<std::string, std::string> values_;
+  Scene scene_;
+  Reading reading_;
+  std::size_t shapes_ = 0;
+  bool has_sensor_ = false;
 };
 
-/// The bsdfs that have an id: at the top, or inside a shape.
-std::map<std::string, Bsdf> named_bsdfs(const std::vector<Element>& elements) {
-  std::map<std::string, Bsdf> bsdfs;
-  const auto add = [&](const Element& element) {
-    if (const auto id = element.find("id")) bsdfs.emplace(*id, read_bsdf(element));
-  };
-  for (const Element& element : elements) {
-    if (element.tag() == "bsdf") add(element);
-    if (element.tag() != "shape") continue;
-    for (const Element& child : element.children()) {
-      if (child.tag() == "bsdf") add(child);
-    }
+/// Refuses a file that is larger than any scene's before it is read.
+std::string read_scene_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (std::filesystem::exists(status) && !std::filesystem::is_directory(status) &&
+      !std::filesystem::is_regular_file(status)) {
+    fail(ExitCode::kBadInput, "{}: is no regular file", path.string());
   }
-  return bsdfs;
+  const auto bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes > XmlBudget().bytes) {
+    fail(ExitCode::kBadInput, "{}:1: the scene's files are larger than {} MiB together", path.string(),
+         XmlBudget().bytes >> 20);
+  }
+  return read_file(path);
 }
 
-void check_unique_ids(const Element& element, std::map<std::string, Element>& seen) {
-  if (const auto id = element.find("id"); id && element.tag() != "ref") {
-    const auto [other, is_new] = seen.emplace(*id, element);
-    if (!is_new) element.error("the id '{}' is taken, by {}", *id, other->second.place());
+/// The places of errors that were told already: what two shapes refer to is wrong once.
+void tell(SceneCheck& check, const Error& error) {
+  if (std::find(check.problems.begin(), check.problems.end(), error.what()) == check.problems.end()) {
+    check.problems.emplace_back(error.what());
   }
-  for (const Element& child : element.children()) check_unique_ids(child, seen);
-}
-
-void check_root(const Element& root) {
-  if (root.tag() != "scene") root.unknown("root element", root.tag(), {"scene"});
-  root.allow_attributes({"version"});
-  const std::string version = root.attribute("version");
-  if (!version.starts_with("3.")) root.error("the scene's version is '{}', allowed: 3.x.x, Mitsuba 3", version);
 }
 
 }  // namespace
 
-Scene parse_scene(std::string_view text, const std::string& file) {
-  const XmlFile xml(text, file);
-  const Element root(xml, xml.root());
-  check_root(root);
-  Parameters().substitute(root, 1);
-  std::map<std::string, Element> ids;
-  check_unique_ids(root, ids);
-
-  Scene scene;
-  scene.name = std::filesystem::path(file).stem().string();
-  const std::vector<Element> elements = root.children();
-  const std::map<std::string, Bsdf> bsdfs = named_bsdfs(elements);
-  bool has_sensor = false;
-  for (const Element& element : elements) {
-    const std::string tag = element.tag();
-    if (tag == "shape") {
-      scene.primitives.push_back(read_shape(element, bsdfs, scene.primitives.size() + 1));
-    } else if (tag == "sensor") {
-      if (has_sensor) element.error("a second <sensor>, allowed: one");
-      scene.sensor = read_sensor(element);
-      has_sensor = true;
-    } else if (tag == "bsdf") {
-      read_bsdf(element);  // one that no shape refers to is checked too
-    } else if (tag != "default" && tag != "integrator") {
-      // An integrator is how Mitsuba renders the scene, no part of what is integrated.
-      element.unknown("element in <scene>", tag, {"default", "integrator", "sensor", "bsdf", "shape"});
-    }
-  }
-  if (!has_sensor) root.error("the scene has no <sensor>, allowed: one");
-  if (scene.primitives.empty()) root.error("the scene has no <shape>, allowed: one or more");
-  return scene;
+Scene parse_scene(std::string_view text, const std::string& file, const SceneParameters& parameters) {
+  const SceneFiles files(std::string(text), file, parameters);
+  SceneReader reader(files, file);
+  for (const Element& element : files.root().children()) reader.read(element);
+  return reader.finish(files.root());
 }
 
-Scene load_scene(const std::filesystem::path& path) { return parse_scene(read_file(path), path.string()); }
+Scene load_scene(const std::filesystem::path& path, const SceneParameters& parameters) {
+  return parse_scene(read_scene_file(path), path.string(), parameters);
+}
+
+namespace {
+
+/// What a step throws for a wrong scene is told, and the next one goes on.
+void attempt(SceneCheck& check, const std::function<void()>& step) {
+  try {
+    step();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kBadInput) throw;
+    tell(check, error);
+  }
+}
+
+void read_all(SceneCheck& check, std::string text, const std::string& file, const SceneParameters& parameters) {
+  const SceneFiles files(std::move(text), file, parameters);
+  check.version = files.version();
+  check.upgraded = files.upgraded();
+  check.included = files.included();
+  SceneReader reader(files, file);
+  for (const Element& element : files.root().children()) attempt(check, [&] { reader.read(element); });
+  attempt(check, [&] { check.scene = reader.finish(files.root()); });
+  if (!check.problems.empty()) check.scene.reset();
+  check.ignored = reader.reading().ignored;
+  std::set<std::string> names;
+  for (const auto& mesh : reader.reading().meshes) names.insert(mesh.first.string());
+  for (const auto& bitmap : reader.reading().bitmaps) names.insert(bitmap.first.first.string());
+  check.other_files.assign(names.begin(), names.end());
+}
+
+}  // namespace
+
+SceneCheck check_scene(const std::filesystem::path& path, const SceneParameters& parameters) {
+  SceneCheck check;
+  attempt(check, [&] { read_all(check, read_scene_file(path), path.string(), parameters); });
+  return check;
+}
+
+SceneCheck check_scene_text(std::string_view text, const std::string& file, const SceneParameters& parameters) {
+  SceneCheck check;
+  attempt(check, [&] { read_all(check, std::string(text), file, parameters); });
+  return check;
+}
 
 }  // namespace halfslope

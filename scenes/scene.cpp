@@ -18,6 +18,8 @@ Ray Sensor::ray(int x, int y, int image_width, int image_height) const {
   }
   assert_equal(x, std::clamp(x, 0, image_width - 1), "column of a pixel");
   assert_equal(y, std::clamp(y, 0, image_height - 1), "row of a pixel");
+  const double across = 1 - 2 * (x + 0.5) / image_width, upwards = 1 - 2 * (y + 0.5) / image_height;
+  if (kind == Kind::kOrthographic) return {origin + across * left + upwards * up, forward};
   const double aspect = static_cast<double>(image_width) / image_height;
   const double tan_half_fov = std::tan(0.5 * fov_degrees * std::numbers::pi / 180);
   FovAxis axis = fov_axis;
@@ -26,8 +28,7 @@ Ray Sensor::ray(int x, int y, int image_width, int image_height) const {
   double tan_half_width = tan_half_fov;
   if (axis == FovAxis::kY) tan_half_width = tan_half_fov * aspect;
   if (axis == FovAxis::kDiagonal) tan_half_width = tan_half_fov / std::hypot(1, 1 / aspect);
-  const double to_left = (1 - 2 * (x + 0.5) / image_width) * tan_half_width;
-  const double to_top = (1 - 2 * (y + 0.5) / image_height) * tan_half_width / aspect;
+  const double to_left = across * tan_half_width, to_top = upwards * tan_half_width / aspect;
   return {origin, (forward + to_left * left + to_top * up).normalized()};
 }
 

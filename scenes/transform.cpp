@@ -55,11 +55,13 @@ Matrix4d read_rotate(const Element& element) {
 Matrix4d read_lookat(const Element& element) {
   element.allow_attributes({"origin", "target", "up"});
   const auto point = [&](const char* name) -> Vector3d { return Vector3d(element.numbers(name, 3).data()); };
-  const Vector3d origin = point("origin"), up = point("up");
+  const Vector3d origin = point("origin");
   const Vector3d forward = (point("target") - origin).stableNormalized();
+  const Vector3d given = element.find("up") ? point("up") : Vector3d::Zero();
+  // Without an up, any will do.
+  const Vector3d up = given.isZero(0) && forward.norm() > 0.5 ? any_perpendicular(forward) : given;
   const Vector3d left = up.stableNormalized().cross(forward);
-  // A zero vector stays zero when normalised, so this one test sees target = origin, up = 0 and up parallel to the
-  // view.
+  // A zero vector stays zero when normalised, so this one test sees target = origin and up parallel to the view.
   if (!(left.norm() > 1e-8)) {
     element.error(
         "<lookat> has no direction, allowed: a target apart from the origin, and an up not parallel to the view");
@@ -86,6 +88,12 @@ Matrix4d read_matrix(const Element& element) {
 }
 
 }  // namespace
+
+Vector3d any_perpendicular(const Vector3d& n) {
+  const double sign = std::copysign(1.0, n.z());
+  const double a = -1 / (sign + n.z());
+  return {1 + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x()};
+}
 
 Matrix4d read_transform(const Element& transform) {
   transform.allow_attributes({"name"});

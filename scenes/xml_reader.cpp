@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
+#include <cctype>
 #include <cmath>
 
 #include "scenes/transform.h"
@@ -10,7 +10,6 @@
 namespace halfslope {
 namespace {
 
-constexpr std::string_view kSeparators = " ,\t\r\n";
 constexpr std::array<std::string_view, 9> kValueTags = {"float",  "integer", "boolean",  "string",   "point",
                                                         "vector", "rgb",     "spectrum", "transform"};
 
@@ -24,132 +23,48 @@ std::vector<std::string> strings(const Range& range) {
   return {range.begin(), range.end()};
 }
 
-template <class Range>
-std::string joined(const Range& names) {
-  std::string list;
-  for (const auto& name : names) list += (list.empty() ? "" : ", ") + std::string(name);
-  return list;
-}
-
 }  // namespace
-
-std::optional<std::vector<double>> parse_numbers(std::string_view text) {
-  std::vector<double> numbers;
-  for (;;) {
-    text.remove_prefix(std::min(text.find_first_not_of(kSeparators), text.size()));
-    if (text.empty()) return numbers;
-    std::string_view word = text.substr(0, text.find_first_of(kSeparators));
-    text.remove_prefix(word.size());
-    if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
-    double number = 0;
-    const auto [end, status] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (status != std::errc() || end != word.data() + word.size() || !std::isfinite(number)) return std::nullopt;
-    numbers.push_back(number);
-  }
-}
-
-XmlFile::XmlFile(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
-  const auto result = document_.load_buffer(text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata,
-                                            pugi::encoding_utf8);
-  if (!result) {
-    const std::string_view before = text.substr(0, std::min(static_cast<std::size_t>(result.offset), text.size()));
-    const auto line = std::count(before.begin(), before.end(), '\n') + 1;
-    const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0: the first line
-    fail(ExitCode::kBadInput, "{}:{}:{}: malformed XML: {}", name_, line, column, result.description());
-  }
-  for (const pugi::xml_node node : document_.children()) {
-    if (node != root())
-      fail(ExitCode::kBadInput, "{}: a second root element <{}>, allowed: one", place(node), node.name());
-  }
-}
-
-std::string XmlFile::place(pugi::xml_node node) const {
-  const auto offset = std::clamp<std::ptrdiff_t>(node.offset_debug(), 0, static_cast<std::ptrdiff_t>(text_.size()));
-  return fmt::format("{}:{}", name_, std::count(text_.begin(), text_.begin() + offset, '\n') + 1);
-}
-
-std::optional<std::string> Element::find(const char* attribute) const {
-  const pugi::xml_attribute found = node_.attribute(attribute);
-  return found ? std::optional<std::string>(found.value()) : std::nullopt;
-}
-
-std::string Element::attribute(const char* name) const {
-  if (auto found = find(name)) return *found;
-  error("<{}> has no attribute '{}'", tag(), name);
-}
-
-std::vector<double> Element::numbers(const char* name, std::size_t count) const {
-  const std::string text = attribute(name);
-  const auto found = parse_numbers(text);
-  if (!found || found->size() != count) {
-    error("attribute '{}' of <{}> is '{}', allowed: {} finite number{}", name, tag(), text, count,
-          count == 1 ? "" : "s");
-  }
-  return *found;
-}
-
-Eigen::Vector3d Element::vector(double absent) const {
-  if (const auto text = find("value")) {
-    for (const char* name : {"x", "y", "z"}) {
-      if (find(name)) error("<{}> has both 'value' and '{}', allowed: one or the other", tag(), name);
-    }
-    const auto found = parse_numbers(*text);
-    if (!found || (found->size() != 1 && found->size() != 3)) {
-      error("attribute 'value' of <{}> is '{}', allowed: one finite number or three", tag(), *text);
-    }
-    if (found->size() == 1) return Eigen::Vector3d::Constant((*found)[0]);
-    return {(*found)[0], (*found)[1], (*found)[2]};
-  }
-  const auto coordinate = [&](const char* name) { return find(name) ? numbers(name, 1)[0] : absent; };
-  return {coordinate("x"), coordinate("y"), coordinate("z")};
-}
-
-void Element::allow_attributes(std::initializer_list<std::string_view> allowed) const {
-  for (const pugi::xml_attribute attribute : node_.attributes()) {
-    if (!contains(allowed, attribute.name())) {
-      unknown(fmt::format("attribute of <{}>", tag()), attribute.name(), strings(allowed));
-    }
-    if (node_.attribute(attribute.name()) != attribute) error("attribute '{}' stands twice", attribute.name());
-  }
-}
-
-std::vector<Element> Element::children() const {
-  std::vector<Element> children;
-  for (const pugi::xml_node child : node_.children()) {
-    if (child.type() != pugi::node_element) {
-      const std::string_view text = child.value();
-      Element(*file_, child)
-          .error("unexpected text '{}' in <{}>, allowed: elements",
-                 text.substr(0, std::min<std::size_t>(text.find('\n'), 40)), tag());
-    }
-    children.emplace_back(*file_, child);
-  }
-  return children;
-}
-
-void Element::unknown(std::string_view what, std::string_view found, const std::vector<std::string>& allowed) const {
-  const std::string list = allowed.empty() ? "none" : joined(allowed);
-  error("unknown {} '{}', allowed: {}{}", what, found, list, did_you_mean(found, allowed));
-}
 
 Properties::Properties(const Element& object, std::initializer_list<std::string_view> objects) : object_(object) {
   object.allow_attributes({"type", "id", "name"});
   for (const Element& child : object.children()) {
-    if (contains(objects, child.tag())) {
-      objects_.push_back(child);
+    const std::string tag = child.tag();
+    if (contains(objects, tag)) {
+      const Element nested = tag == "ref" ? resolve(child, objects) : child;
+      if (nested.tag() == "texture") {
+        add_value(child.attribute("name"), nested, child);
+      } else {
+        objects_.push_back({nested, child});
+      }
       continue;
     }
-    if (!contains(kValueTags, child.tag())) {
+    if (!contains(kValueTags, tag)) {
       std::vector<std::string> allowed = strings(objects);
-      for (const std::string_view tag : kValueTags) allowed.emplace_back(tag);
-      child.unknown(fmt::format("element in <{}>", object.tag()), child.tag(), allowed);
+      for (const std::string_view value : kValueTags) allowed.emplace_back(value);
+      child.unknown(fmt::format("element in <{}>", object.tag()), tag, allowed);
     }
-    if (child.tag() != "transform" && !child.children().empty()) {
-      child.children().front().error("<{}> inside <{}>, allowed: nothing", child.children().front().tag(), child.tag());
+    if (tag != "transform" && !child.children().empty()) {
+      child.children().front().error("<{}> inside <{}>, allowed: nothing", child.children().front().tag(), tag);
     }
-    const std::string name = child.attribute("name");
-    if (!values_.emplace(name, child).second) child.error("'{}' is given a second time", name);
+    add_value(child.attribute("name"), child, child);
   }
+}
+
+Element Properties::resolve(const Element& ref, std::initializer_list<std::string_view> objects) {
+  ref.allow_attributes({"id", "name"});
+  const std::string id = ref.attribute("id");
+  const Ids& ids = ref.file().ids();
+  if (const auto found = ids.find(id); found != ids.end() && contains(objects, found->second.tag()))
+    return found->second;
+  std::vector<std::string> candidates;
+  for (const auto& [other, element] : ids) {
+    if (contains(objects, element.tag())) candidates.push_back(other);
+  }
+  ref.unknown(fmt::format("{} id", *objects.begin()), id, candidates);
+}
+
+void Properties::add_value(const std::string& name, const Element& value, const Element& at) {
+  if (!values_.emplace(name, value).second) at.error("'{}' is given a second time", name);
 }
 
 const Element* Properties::ask(const std::string& name, std::initializer_list<std::string_view> tags) {
@@ -157,8 +72,9 @@ const Element* Properties::ask(const std::string& name, std::initializer_list<st
   const auto found = values_.find(name);
   if (found == values_.end()) return nullptr;
   if (!contains(tags, found->second.tag())) {
-    reject(name, fmt::format("given as {}", found->second.tag()), fmt::format("as {}", joined(tags)));
+    reject(name, fmt::format("given as {}", found->second.tag()), fmt::format("as {}", comma_separated(tags)));
   }
+  read_.push_back(name);
   return &found->second;
 }
 
@@ -188,7 +104,8 @@ std::optional<bool> Properties::boolean(const std::string& name) {
   const Element* value = ask(name, {"boolean"});
   if (!value) return std::nullopt;
   value->allow_attributes({"name", "value"});
-  const std::string text = value->attribute("value");
+  std::string text = value->attribute("value");
+  for (char& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   if (text != "true" && text != "false") reject(name, fmt::format("'{}'", text), "true, false");
   return text == "true";
 }
@@ -200,8 +117,15 @@ std::optional<std::string> Properties::string(const std::string& name) {
   return value->attribute("value");
 }
 
-std::optional<Eigen::Vector3d> Properties::vector(const std::string& name, std::string_view tag) {
-  const Element* value = ask(name, {tag});
+std::optional<Properties::NumberOrName> Properties::number_or_name(const std::string& name) {
+  const Element* value = ask(name, {"float", "integer", "string"});
+  if (!value) return std::nullopt;
+  if (value->tag() == "string") return NumberOrName{std::nullopt, *string(name)};
+  return NumberOrName{number(name), ""};
+}
+
+std::optional<Eigen::Vector3d> Properties::vector(const std::string& name) {
+  const Element* value = ask(name, {"point", "vector"});
   if (!value) return std::nullopt;
   value->allow_attributes({"name", "value", "x", "y", "z"});
   return value->vector(0);
@@ -225,19 +149,48 @@ std::optional<Eigen::Array3d> Properties::colour(const std::string& name) {
   return value->vector(0).array();
 }
 
+std::optional<Element> Properties::texture(const std::string& name) {
+  const auto found = values_.find(name);
+  if (found == values_.end() || found->second.tag() != "texture") return std::nullopt;
+  return *ask(name, {"texture"});
+}
+
 std::optional<Eigen::Matrix4d> Properties::transform(const std::string& name) {
   const Element* value = ask(name, {"transform"});
   return value ? std::optional<Eigen::Matrix4d>(read_transform(*value)) : std::nullopt;
 }
 
-std::optional<Element> Properties::object(std::string_view tag) const {
-  std::optional<Element> found;
-  for (const Element& object : objects_) {
-    if (object.tag() != tag) continue;
-    if (found) object.error("a second <{}> in <{}>, allowed: one", tag, object_.tag());
-    found = object;
+std::vector<Element> Properties::objects(std::string_view tag) const {
+  std::vector<Element> found;
+  for (const Nested& nested : objects_) {
+    if (nested.object.tag() == tag) found.push_back(nested.object);
   }
   return found;
+}
+
+std::optional<Element> Properties::object(std::string_view tag) const {
+  std::optional<Element> found;
+  bool by_ref = false;
+  for (const Nested& nested : objects_) {
+    if (nested.object.tag() != tag) continue;
+    const bool is_ref = nested.at.tag() == "ref";
+    if (found && is_ref != by_ref) {
+      nested.at.error("a <{}> beside a <{}> in one {}, allowed: one or the other", nested.at.tag(),
+                      by_ref ? "ref" : tag, object_.tag());
+    }
+    if (found) nested.at.error("a second <{}> in <{}>, allowed: one", nested.at.tag(), object_.tag());
+    found = nested.object;
+    by_ref = is_ref;
+  }
+  return found;
+}
+
+std::vector<std::string> Properties::unread() const {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values_) {
+    if (contains(known_, name) && !contains(read_, name)) names.push_back(name);
+  }
+  return names;
 }
 
 void Properties::reject(const std::string& name, std::string_view found, std::string_view allowed) const {
