@@ -30,7 +30,7 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
 
   std::vector<Command> commands;
   for (const auto add : {add_run, add_list, add_points, add_measure, add_render, add_reference, add_figure,
-                         add_selfcheck, add_analyze, add_completion})
+                         add_selfcheck, add_analyze, add_scenes, add_completion})
     commands.push_back(add(app));
 
   try {

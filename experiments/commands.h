@@ -80,6 +80,12 @@ struct FigureArguments {
 };
 int figure_command(const FigureArguments& arguments, const Catalogue& catalogue);
 
+struct ScenesCheckArguments {
+  std::vector<std::string> files;  ///< scene files, with parameters perhaps, or names of shipped scenes
+  bool json = false;
+};
+int scenes_check_command(const ScenesCheckArguments& arguments);
+
 struct SelfcheckArguments {
   std::string what;                  ///< coverage
   std::vector<std::string> studies;  ///< names; empty: all

@@ -25,6 +25,7 @@ Command add_reference(CLI::App& app);
 Command add_figure(CLI::App& app);
 Command add_selfcheck(CLI::App& app);
 Command add_analyze(CLI::App& app);
+Command add_scenes(CLI::App& app);
 Command add_completion(CLI::App& app);
 
 /// Flags that several commands have.
