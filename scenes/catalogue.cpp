@@ -25,6 +25,12 @@ std::vector<SceneEntry> rendered_scenes() {
        "the white-furnace test of energy conservation"},
       {"glossy-reflection", "a glossy floor reflects square lights of equal power, from small to large",
        "the comparison of uniform with stratified sampling by their noise"},
+      {"cornell-box",
+       "a diffuse room of red, green and white with two blocks under a lamp; for paths of many reflections",
+       "Goral, Torrance, Greenberg & Battaile, Modeling the Interaction of Light Between Diffuse Surfaces, SIGGRAPH "
+       "1984"},
+      {"glossy-indirect", "a lamp that shines at the ceiling lights a room with a glossy floor; for paths",
+       "light that no connection with the lamp finds"},
   };
 }
 

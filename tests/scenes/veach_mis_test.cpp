@@ -47,7 +47,7 @@ TEST(Catalogue, UnknownNameOffersTheNearest) {
     EXPECT_EQ(error.code(), ExitCode::kBadInput);
     EXPECT_STREQ(error.what(),
                  "unknown scene 'veach-mi', allowed: veach-mis, veach-mis-phong, diffuse-rectangle, diffuse-disk, "
-                 "diffuse-sphere, furnace, glossy-reflection; did you mean 'veach-mis'?");
+                 "diffuse-sphere, furnace, glossy-reflection, cornell-box, glossy-indirect; did you mean 'veach-mis'?");
   }
 }
 
