@@ -15,6 +15,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// Up to so many shapes a look at the scene takes no time.
+constexpr std::size_t kLookedAt = 200;
+
 std::string type_of(const Shape& shape) {
   if (std::holds_alternative<Sphere>(shape)) return "sphere";
   if (std::holds_alternative<Cylinder>(shape)) return "cylinder";
@@ -140,7 +143,7 @@ std::vector<std::string> skips_of(const Scene& scene, std::size_t lights) {
   std::vector<std::string> lines;
   if (lights == 0) lines.push_back("no light: there is nothing to measure, and estimators refuse the scene");
   const std::string why = why_not_plain(scene);
-  if (why.empty() && lights > 0) {
+  if (why.empty() && lights > 0 && scene.primitives.size() <= kLookedAt) {
     const bool rays = scene.sensor.kind == Sensor::Kind::kRays;
     const double shrink = rays ? 1 : std::max(1.0, std::max(scene.sensor.width, scene.sensor.height) / 64.0);
     const int width = std::max(1, static_cast<int>(scene.sensor.width / shrink)),
