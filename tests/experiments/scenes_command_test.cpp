@@ -19,7 +19,9 @@ using testing::StartsWith;
 
 class ScenesCommand : public CommandLine {
  protected:
-  Ended check(const std::vector<std::string>& more) const { return command({"scenes", "check"} + more); }
+  Ended check(const std::vector<std::string>& more) const {
+    return command(std::vector<std::string>{"scenes", "check"} + more);
+  }
   std::string write_scene(const char* name, const std::string& body) const {
     return write(name, "<scene version='3.0.0'>\n" + body + "\n</scene>");
   }

@@ -82,8 +82,8 @@ TEST(CornellBox, TheCameraSeesRedOnTheLeftAndTheBackBetweenTheBlocks) {
   EXPECT_EQ(seen(10, 128), "left");
   EXPECT_EQ(seen(245, 128), "right");
   EXPECT_EQ(seen(128, 60), "back");
-  EXPECT_EQ(seen(128, 250), "floor");
-  EXPECT_EQ(seen(128, 20), "lamp");
+  EXPECT_EQ(seen(128, 245), "floor");  // down to 128 (1 + 273/800 · 35/12.5) = 250
+  EXPECT_EQ(seen(128, 36), "lamp");    // 128 (1 − 275.7/1079.5 · 35/12.5) = 36
   EXPECT_EQ(seen(128, 5), "ceiling");
 }
 
