@@ -32,8 +32,8 @@ static_assert(offsetof(RayPacket, primitive) == offsetof(RTCRayHit16, hit.geomID
 constexpr double kReach = 1e18;
 
 const char* device_configuration() {
-  // One thread builds the same hierarchy whatever the machine has.
-  return active_isa() == Isa::kBaseline ? "isa=sse2,threads=1,set_affinity=0" : "isa=avx2,threads=1,set_affinity=0";
+  // No number of threads: it would bind the whole process while the device lives. The hierarchy is the same for any.
+  return active_isa() == Isa::kBaseline ? "isa=sse2,set_affinity=0" : "isa=avx2,set_affinity=0";
 }
 
 struct Box {

@@ -19,7 +19,7 @@ namespace halfslope {
 /// approximate reciprocal, which is not the same everywhere. Where two surfaces are as near to each other as its
 /// rounding, which of them comes first may still depend on it.)
 ///
-/// Thread-safe once made.
+/// Thread-safe once made. Built by the threads of oneTBB's arena that the constructor is called in.
 class EmbreeScene {
  public:
   /// Builds in milliseconds, or about half a second for a million triangles. Throws Error(kBadInput) with Embree's

@@ -1,6 +1,8 @@
 // Sixteen rays in Embree: against our own double-precision code, against each other, and at edges.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -286,6 +288,50 @@ int count_leaks(const Vec3& origin, const std::vector<Vec3>& targets) {
     for (int i = 0; i < 16; ++i) leaks += packet.primitive[i] != 0;
   }
   return leaks;
+}
+
+/// Each triangle several times, in random order: which copy is met depends on the hierarchy alone.
+Scene scene_of_ties() {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> uniform(-1, 1);
+  auto mesh = std::make_shared<Mesh>();
+  for (int i = 0; i < 10000; ++i) {
+    const float x = uniform(random), y = uniform(random), z = uniform(random);
+    const auto first = static_cast<std::uint32_t>(mesh->positions.size());
+    for (int k = 0; k < 3; ++k)
+      mesh->positions.push_back({x + 0.1F * uniform(random), y + 0.1F * uniform(random), z + 0.1F * uniform(random)});
+    mesh->triangles.insert(mesh->triangles.end(), 4, {first, first + 1, first + 2});
+  }
+  std::shuffle(mesh->triangles.begin(), mesh->triangles.end(), random);
+  Scene scene;
+  add(scene, std::shared_ptr<const Mesh>(mesh));
+  return scene;
+}
+
+TEST(Embree, AnyNumberOfThreadsBuildsTheSame) {
+  const Scene scene = scene_of_ties();
+  std::vector<std::vector<RayPacket>> results;
+  for (const int threads : {1, 2, 8}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+    std::vector<RayPacket>& rays = results.emplace_back(random_rays(1000, 3));
+    tbb::task_arena(threads).execute([&] {
+      const EmbreeScene embree(scene);
+      for (RayPacket& packet : rays) embree.first(packet);
+    });
+  }
+  for (std::size_t p = 0; p < results[0].size(); ++p) {
+    for (int i = 0; i < 16; ++i) {
+      ASSERT_TRUE(same_bits(results[0][p], i, results[1][p], i));
+      ASSERT_TRUE(same_bits(results[0][p], i, results[2][p], i));
+    }
+  }
+}
+
+TEST(Embree, LeavesTheProcessItsThreads) {
+  const auto threads = [] { return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism); };
+  const std::size_t before = threads();
+  const EmbreeScene embree(mixed_scene());
+  EXPECT_EQ(threads(), before);
 }
 
 TEST(Embree, NoRayLeavesAClosedMesh) {
