@@ -162,13 +162,12 @@ namespace {
 class Traced {
  public:
   explicit Traced(RayPacket& packet) : packet_(packet) {
-    constexpr auto kFar = static_cast<float>(kReach);
     // Without branches, so that it is done several lanes at a time.
     for (std::size_t i = 0; i < RayPacket::kLanes; ++i) {
-      const bool near = (std::abs(packet.ox[i]) < kFar) & (std::abs(packet.oy[i]) < kFar) &
-                        (std::abs(packet.oz[i]) < kFar) & (std::abs(packet.dx[i]) < kFar) &
-                        (std::abs(packet.dy[i]) < kFar) & (std::abs(packet.dz[i]) < kFar);
-      const bool traced = (packet.active[i] != 0) & near & (packet.tnear[i] >= 0) & (packet.tnear[i] <= packet.tfar[i]);
+      const auto near = [](float x) { return static_cast<int>(std::abs(x) < static_cast<float>(kReach)); };
+      const int traced = static_cast<int>(packet.active[i] != 0) & near(packet.ox[i]) & near(packet.oy[i]) &
+                         near(packet.oz[i]) & near(packet.dx[i]) & near(packet.dy[i]) & near(packet.dz[i]) &
+                         static_cast<int>(packet.tnear[i] >= 0) & static_cast<int>(packet.tnear[i] <= packet.tfar[i]);
       mask_[i] = traced ? -1 : 0;
       tnear_[i] = packet.tnear[i];
       tfar_[i] = packet.tfar[i];

@@ -65,5 +65,5 @@ done
 for reader in "${readers[@]}"; do
   echo "fuzz: $reader, $seconds seconds"
   "build/fuzz/${reader}_fuzz" -max_total_time="$seconds" -timeout=2 -rss_limit_mb=1024 -malloc_limit_mb=256 -max_len=16384 \
-    -verbosity=0 -print_final_stats=1 -artifact_prefix="build/fuzz/$reader-" "$seeds/$reader"
+    -verbosity=0 -print_funcs=0 -print_final_stats=1 -artifact_prefix="build/fuzz/$reader-" "$seeds/$reader"
 done
