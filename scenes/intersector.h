@@ -11,9 +11,9 @@
 
 namespace halfslope {
 
-/// The most pieces (shapes, and triangles of meshes) that are tried one by one. Measured by benchmarks/rays_benchmark.cpp
-/// in binary32: trying each of 64 triangles is 1.7 to 4 times as fast as Embree by AVX2, 3 to 6 times by AVX-512; of 256,
-/// 0.6 to 1.9 and 1 to 3.3 times. Packets of binary64 take twice as long to try.
+/// The most pieces (shapes, and triangles of meshes) that are tried one by one. Measured by
+/// benchmarks/rays_benchmark.cpp in binary32: trying each of 64 triangles is 1.7 to 4 times as fast as Embree by AVX2,
+/// 3 to 6 times by AVX-512; of 256, 0.6 to 1.9 and 1 to 3.3 times. Packets of binary64 take twice as long to try.
 inline constexpr std::size_t kHandful = 64;
 
 /// Shapes that are no mesh, and triangles of those that are.
