@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -21,6 +22,9 @@ struct Technique {
   std::string name;
   Layout layout;
 };
+
+/// As a TechniqueCall's technique: a path, with a sample of each technique in `set` at every vertex.
+inline constexpr int kPath = -1;
 
 /// Which samples to take: `technique` at the dimensions from `first_dim` of each point, written to `slot`, with the
 /// densities of the techniques in `set` (indices into the source's techniques).
@@ -68,8 +72,15 @@ class IntegralSource {
   /// 1 where every channel is equal.
   virtual int channels() const { return 1; }
   virtual std::span<const Technique> techniques() const = 0;
-  /// The first so many of techniques() draw references, and they suffice to reach all that contributes.
-  virtual std::size_t reference_techniques() const { return techniques().size(); }
+  /// The techniques that draw references, ascending: they suffice to reach all that contributes.
+  virtual std::vector<int> reference_techniques() const {
+    std::vector<int> all(techniques().size());
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+  /// Where each sample is a path: its shape. Its terms are one that every heuristic adds whole, then one of each
+  /// technique for each vertex; N counts paths.
+  virtual const PathShape* path() const { return nullptr; }
   /// Pixel y · width + x, rows from the top.
   virtual PixelIntegral pixel(int index) const = 0;
   /// The exact value of the pixel, constant part included, where it is known in closed form.

@@ -17,4 +17,14 @@ struct Layout {
   bool operator==(const Layout&) const = default;
 };
 
+/// How the dimensions of a path belong together: `start`, then for each of its vertices a sample of each technique and
+/// `each`.
+struct PathShape {
+  Layout start;
+  int vertices = 0;
+  Layout each;
+
+  bool operator==(const PathShape&) const = default;
+};
+
 }  // namespace halfslope

@@ -1,95 +1,87 @@
 #include "estimators/direct_lighting.h"
 
 #include <algorithm>
-#include <variant>
+#include <array>
 
 #include "core/error.h"
-#include "core/kernel_library.h"
-#include "core/numbers.h"
-#include "estimators/kernels.h"
-#include "estimators/local_pixel.h"
+#include "estimators/reflected_light.h"
 #include "estimators/skip_worth.h"
 #include "scenes/closed_form.h"
+#include "scenes/fingerprint.h"
 
 namespace halfslope {
 namespace {
 
-/// Whether the technique's first number chooses among several: one light, or one surface, is no choice, and takes no
-/// dimension.
-bool chooses(LightingTechnique technique, const Scene& scene, const Emitters& emitters) {
-  if (technique == LightingTechnique::kLight) return emitters.lights.size() > 1;
-  return technique == LightingTechnique::kSurface && scene.primitives.size() > 1;
+Scene with_lights(Scene scene) {
+  if (!list_lights(scene).empty()) return scene;
+  fail(ExitCode::kBadInput,
+       "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
 }
 
-/// Reflected light at one point. A pixel is sampled in one precision, and what that needs is made when it is first
-/// asked for; an integral belongs to one thread.
-class ReflectedLight final : public Integral {
- public:
-  ReflectedLight(const Scene& scene, const Emitters& emitters, const Receiver& receiver, const Vec3& to_eye,
-                 int channels)
-      : scene_(scene), emitters_(emitters), receiver_(receiver), to_eye_(to_eye), channels_(channels) {}
-
-  void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<float>& terms) const override {
-    evaluate(f32_, call, points, terms, kernels_.lighting_f32);
-  }
-  void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<double>& terms) const override {
-    evaluate(f64_, call, points, terms, kernels_.lighting_f64);
-  }
-
- private:
-  template <class T>
-  void evaluate(std::optional<LocalPixel<T>>& pixel, const TechniqueCall& call, const PointBlock& points,
-                TermBlock<T>& terms, void (*kernel)(const LightingCall<T>&)) const {
-    if (!pixel) pixel.emplace(scene_, emitters_, receiver_, to_eye_);
-    const auto technique = static_cast<LightingTechnique>(call.technique);
-    const bool choose = chooses(technique, scene_, emitters_);
-    const std::uint32_t *high[3], *low[3];
-    for (int d = 0; d < (choose ? 3 : 2); ++d) {
-      high[d] = points.high(call.first_dim + d);
-      low[d] = points.low(call.first_dim + d);
-    }
-    T* values[3];
-    for (int c = 0; c < channels_; ++c) values[c] = terms.value(call.slot, c);
-    T* pdfs[kLightingTechniques] = {};
-    for (std::size_t k = 0; k < call.set.size(); ++k) pdfs[call.set[k]] = terms.pdf(call.slot, static_cast<int>(k));
-    kernel({&pixel->data, technique, channels_, choose, high, low, points.stride(), values, pdfs});
-  }
-
-  const Scene& scene_;
-  const Emitters& emitters_;
-  Receiver receiver_;
-  Vec3 to_eye_;
-  int channels_;
-  const EstimatorKernels& kernels_ = kernels<EstimatorKernels>();
-  mutable std::optional<LocalPixel<float>> f32_;
-  mutable std::optional<LocalPixel<double>> f64_;
+struct NamedTechnique {
+  const char* name;
+  TransportTechnique meaning;
 };
 
-Scene with_lights(Scene scene) {
-  for (const Primitive& p : scene.primitives) {
-    if (p.emits) return scene;
+/// In the order in which estimators draw them.
+constexpr std::array kTechniques = {
+    NamedTechnique{"light", TransportTechnique::kLight},
+    NamedTechnique{"bsdf", TransportTechnique::kBsdf},
+    NamedTechnique{"hemisphere", TransportTechnique::kHemisphere},
+    NamedTechnique{"cosine", TransportTechnique::kCosine},
+    NamedTechnique{"surface", TransportTechnique::kSurface},
+    NamedTechnique{"light-power", TransportTechnique::kLightPower},
+    NamedTechnique{"light-bvh", TransportTechnique::kLightBvh},
+    NamedTechnique{"light-solid-angle", TransportTechnique::kLightSolidAngle},
+    NamedTechnique{"light-power-solid-angle", TransportTechnique::kLightPowerSolidAngle},
+    NamedTechnique{"light-bvh-solid-angle", TransportTechnique::kLightBvhSolidAngle},
+};
+
+/// Whether the technique's first number chooses among several: one light, one surface, or one lobe, is no choice, and
+/// takes no dimension.
+bool chooses(TransportTechnique technique, std::size_t lights, std::size_t surfaces, bool lobes) {
+  switch (technique) {
+    case TransportTechnique::kBsdf:
+      return lobes;
+    case TransportTechnique::kHemisphere:
+    case TransportTechnique::kCosine:
+      return false;
+    case TransportTechnique::kSurface:
+      return surfaces > 1;
+    default:
+      return lights > 1;
   }
-  fail(ExitCode::kBadInput, "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">", scene.name);
 }
 
 }  // namespace
 
 DirectLighting::DirectLighting(Scene scene, int width, int height)
     : scene_(with_lights(std::move(scene))),
-      emitters_(find_emitters(scene_)),
+      plain_(is_plain(scene_)),
+      emitters_(plain_ ? find_emitters(scene_) : Emitters{}),
       width_(width),
       height_(height),
-      channels_(is_grey(scene_) ? 1 : 3) {
-  // In the order of LightingTechnique.
-  for (const char* name : {"light", "bsdf", "hemisphere", "cosine", "surface"}) {
-    const auto technique = static_cast<LightingTechnique>(techniques_.size());
-    techniques_.push_back({name, {{2}}});
-    if (chooses(technique, scene_, emitters_)) techniques_.back().layout = {{1, 2}};
+      channels_(is_grey(scene_) ? 1 : 3),
+      tracing_(tracing_of(scene_)),
+      intersector_(scene_),
+      transport_(scene_, tracing_, false) {
+  const bool lobes = chooses_lobes(scene_);
+  const std::size_t lights = plain_ ? emitters_.lights.size() : transport_.chosen();
+  for (const NamedTechnique& technique : kTechniques) {
+    if (technique.meaning == TransportTechnique::kSurface && scene_.environment) continue;
+    const bool choice = chooses(technique.meaning, lights, count_pieces(scene_), lobes);
+    techniques_.push_back({technique.name, choice ? Layout{{1, 2}} : Layout{{2}}});
+    meanings_.push_back(technique.meaning);
+  }
+  for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
+    if (scene_.primitives[i].emits) lights_.push_back(static_cast<int>(i));
   }
 }
 
 Hit DirectLighting::hit(int pixel) const {
-  return first_hit(scene_, scene_.sensor.ray(pixel % width_, pixel / width_, width_, height_));
+  if (plain_) return first_hit(scene_, ray(pixel));
+  const SurfaceHit found = intersector_.first(ray(pixel));
+  return {found.primitive, found.distance, found.position, found.shading_normal, found.front};
 }
 
 bool DirectLighting::sees_constant(const Hit& hit) const {
@@ -110,6 +102,7 @@ Color DirectLighting::emitted(const Hit& hit) const {
 
 // Each light adds ρ L_e · E/(πL), if nothing can come between and that form factor is known.
 std::optional<Color> DirectLighting::closed_form(int pixel) const {
+  if (!plain_) return std::nullopt;
   const Hit seen = hit(pixel);
   Color sum = emitted(seen);
   if (sees_constant(seen)) return sum;
@@ -134,43 +127,80 @@ std::optional<Color> DirectLighting::closed_form(int pixel) const {
 }
 
 PixelIntegral DirectLighting::pixel(int index) const {
+  if (!plain_) return general_pixel(index);
   const Hit seen = hit(index);
   PixelIntegral result;
   result.constant = emitted(seen);
   if (sees_constant(seen)) return result;
-  const Receiver receiver = {seen.position, seen.normal, seen.primitive};
-  const Ray ray = scene_.sensor.ray(index % width_, index / width_, width_, height_);
-  result.integral = std::make_unique<ReflectedLight>(scene_, emitters_, receiver, -ray.direction, channels_);
+  result.integral = plain_light_at({scene_, transport_, techniques_, meanings_, channels_}, emitters_,
+                                   {seen.position, seen.normal, seen.primitive}, ray(index), tracing_);
   return result;
 }
 
-// Parts of the image: for each shape, the pixels that see it, split by the light nearest to the mirror direction.
+PixelIntegral DirectLighting::general_pixel(int index) const {
+  const Ray eye = ray(index);
+  const SeenPoint seen = see(transport_.of<double>().scene(), tracing_.to_kernel(eye.origin), eye.direction);
+  PixelIntegral result;
+  for (std::size_t c = 0; c < 3; ++c) result.constant[c] = seen.emitted[c] + seen.certain[c];
+  if (seen.samples) result.integral = light_at({scene_, transport_, techniques_, meanings_, channels_}, seen.start);
+  return result;
+}
+
+// Parts of the image: for each shape, the pixels that see it, split by the light nearest to the mirror direction where
+// there are few of both.
 std::vector<std::string> DirectLighting::regions() const {
   std::vector<std::string> names = {"background"};
   for (const Primitive& shape : scene_.primitives) {
-    for (const int light : emitters_.lights)
-      names.push_back(shape.id + "/" + scene_.primitives[static_cast<std::size_t>(light)].id);
+    if (!splits_regions()) names.push_back(shape.id);
+    for (const int light : lights_) {
+      if (splits_regions()) names.push_back(shape.id + "/" + scene_.primitives[static_cast<std::size_t>(light)].id);
+    }
   }
   return names;
+}
+
+bool DirectLighting::splits_regions() const {
+  constexpr std::size_t kMostRegions = 1000;
+  return !lights_.empty() && scene_.primitives.size() * lights_.size() <= kMostRegions;
 }
 
 int DirectLighting::region(int pixel) const {
   const Hit seen = hit(pixel);
   if (seen.primitive < 0) return 0;
-  const Vec3 d = scene_.sensor.ray(pixel % width_, pixel / width_, width_, height_).direction;
+  if (!splits_regions()) return 1 + seen.primitive;
+  const Vec3 d = ray(pixel).direction;
   const Vec3 mirror = d - 2 * d.dot(seen.normal) * seen.normal;
   std::size_t nearest = 0;
   double best = -2;
-  const auto& lights = emitters_.lights;
-  for (std::size_t l = 0; l < lights.size(); ++l) {
-    const Vec3 center = middle(scene_.primitives[static_cast<std::size_t>(lights[l])]);
+  for (std::size_t l = 0; l < lights_.size(); ++l) {
+    const Vec3 center = middle(scene_.primitives[static_cast<std::size_t>(lights_[l])]);
     const double cosine = mirror.dot((center - seen.position).normalized());
     if (cosine > best) best = cosine, nearest = l;
   }
-  return static_cast<int>(1 + static_cast<std::size_t>(seen.primitive) * lights.size() + nearest);
+  return static_cast<int>(1 + static_cast<std::size_t>(seen.primitive) * lights_.size() + nearest);
 }
 
-std::vector<std::string> DirectLighting::skips() const {
+std::vector<std::string> DirectLighting::skips() const { return plain_ ? plain_skips() : general_skips(); }
+
+std::vector<std::string> DirectLighting::general_skips() const {
+  std::vector<std::string> lines = {"intersection: " + intersector_.why()};
+  int constant = 0;
+  for (int p = 0; p < pixels(); ++p) constant += pixel(p).integral ? 0 : 1;
+  if (constant > 0) {
+    lines.push_back(
+        fmt::format("{} of {} pixels see only background, emitters, or what a delta lobe shows: constant, not sampled",
+                    constant, pixels()));
+  }
+  if (transport_.chosen() < transport_.lights().size()) {
+    lines.push_back("delta lights are added as constants: what comes from them at one point is no integral");
+  }
+  if (transport_.chosen() == 1)
+    lines.push_back("one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice));
+  if (channels_ == 1) lines.push_back("grey scene: one channel" + worth(kWorthOneChannel));
+  return lines;
+}
+
+std::vector<std::string> DirectLighting::plain_skips() const {
   int constant = 0, unshadowed = 0, known = 0;
   for (int p = 0; p < pixels(); ++p) {
     const Hit seen = hit(p);
@@ -209,31 +239,7 @@ std::vector<std::string> DirectLighting::skips() const {
 }
 
 std::string DirectLighting::fingerprint() const {
-  std::string text = fmt::format("direct-lighting {}x{}", width_, height_);
-  const auto add = [&](const auto& v) {
-    for (int i = 0; i < 3; ++i) text += " " + format_number(v[i]);
-  };
-  for (const Primitive& p : scene_.primitives) {
-    text += p.emits ? "\nemitter" : "\nshape";
-    if (const auto* s = std::get_if<Sphere>(&p.shape)) {
-      add(s->center);
-      text += fmt::format(" {} {}", format_number(s->radius), s->flip_normals);
-    } else {
-      const auto& r = std::get<Flat>(p.shape);
-      if (r.outline == Flat::Outline::kDisk) text += " disk";
-      add(r.center), add(r.half_u), add(r.half_v), add(r.normal);
-    }
-    add(p.radiance);
-    text += fmt::format(" {} {} {}", static_cast<int>(p.bsdf.kind), format_number(p.bsdf.alpha), p.bsdf.unit_fresnel);
-    add(p.bsdf.reflectance), add(p.bsdf.eta), add(p.bsdf.k);
-    if (p.bsdf.kind == BsdfKind::kPhong) add(p.bsdf.specular), text += ' ' + format_number(p.bsdf.exponent);
-  }
-  for (int pixel = 0; pixel < pixels(); pixel += std::max(1, pixels() - 1)) {
-    const Ray ray = scene_.sensor.ray(pixel % width_, pixel / width_, width_, height_);
-    add(ray.origin), add(ray.direction);
-  }
-  for (const Ray& ray : scene_.sensor.rays) add(ray.origin), add(ray.direction);
-  return text;
+  return fmt::format("direct-lighting {}x{}\n{}", width_, height_, scene_fingerprint(scene_));
 }
 
 }  // namespace halfslope

@@ -19,8 +19,8 @@ constexpr std::size_t kChunk = 16 * kLanes;  // points converted at a time; thei
 // BSDF's technique would have drawn it with.
 struct ByBsdf {
   template <class F, class Bsdf>
-  static Vec<F> draw(const Bsdf& bsdf, const F& u1, const F& u2) {
-    return bsdf.draw(u1, u2);
+  static Vec<F> draw(const Bsdf& bsdf, const F& u_lobe, const F& u1, const F& u2) {
+    return bsdf.draw(u_lobe, u1, u2);
   }
   template <class F, class Bsdf>
   static void weigh(const Bsdf& bsdf, const Vec<F>& wi, F* weight, F& pdf_bsdf) {
@@ -30,7 +30,7 @@ struct ByBsdf {
 
 struct ByHemisphere {
   template <class F, class Bsdf>
-  static Vec<F> draw(const Bsdf&, const F& u1, const F& u2) {
+  static Vec<F> draw(const Bsdf&, const F& /*u_lobe*/, const F& u1, const F& u2) {
     return uniform_hemisphere(u1, u2);
   }
   template <class F, class Bsdf>
@@ -45,7 +45,7 @@ struct ByHemisphere {
 
 struct ByCosine {
   template <class F, class Bsdf>
-  static Vec<F> draw(const Bsdf&, const F& u1, const F& u2) {
+  static Vec<F> draw(const Bsdf&, const F& /*u_lobe*/, const F& u1, const F& u2) {
     return cosine_hemisphere(u1, u2);
   }
   template <class F, class Bsdf>
@@ -70,14 +70,18 @@ void directions(const LightingCall<scalar_t<F>>& call, const Bsdf& bsdf) {
   const F zero(T(0));
   const bool wants_light = call.pdfs[static_cast<int>(LightingTechnique::kLight)] != nullptr,
              wants_surface = call.pdfs[static_cast<int>(LightingTechnique::kSurface)] != nullptr;
-  alignas(64) T u1[kChunk], u2[kChunk];
+  const bool chooses = call.choose && call.technique == LightingTechnique::kBsdf;
+  const int pair = chooses ? 1 : 0;
+  alignas(64) T lobe[kChunk] = {}, u1[kChunk], u2[kChunk];
   for (std::size_t begin = 0; begin < call.count; begin += kChunk) {
     const std::size_t size = call.count - begin < kChunk ? call.count - begin : kChunk;
-    to_coordinates(call.high[0] + begin, call.low[0] ? call.low[0] + begin : nullptr, size, u1);
-    to_coordinates(call.high[1] + begin, call.low[1] ? call.low[1] + begin : nullptr, size, u2);
+    const auto low = [&](int d) { return call.low[d] ? call.low[d] + begin : nullptr; };
+    if (chooses) to_coordinates(call.high[0] + begin, low(0), size, lobe);
+    to_coordinates(call.high[pair] + begin, low(pair), size, u1);
+    to_coordinates(call.high[pair + 1] + begin, low(pair + 1), size, u2);
     for (std::size_t i = 0; i < size; i += kWidth<F>) {
       LightPoint<F> point;
-      point.wi = Way::draw(bsdf, load<F>(u1 + i), load<F>(u2 + i));
+      point.wi = Way::draw(bsdf, load<F>(lobe + i), load<F>(u1 + i), load<F>(u2 + i));
       point.distance = F(std::numeric_limits<T>::max());
       point.cosine = point.pdf_area = point.pdf_area_surface = zero;
       F light(T(-1)), radiance[3];

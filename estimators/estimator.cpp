@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMostSamples = 64;  // of one round: its terms are held for a whole block
 constexpr int kMostTechniques = 16;
-constexpr std::string_view kOneSample = "one-sample-";
+constexpr std::string_view kOneSample = "one-sample-", kPathPrefix = "path-";
 
 std::vector<std::string> names_of(std::span<const Technique> techniques) {
   std::vector<std::string> names;
@@ -92,7 +92,7 @@ std::string default_techniques(std::span<const Technique> techniques) {
 
 }  // namespace
 
-int Allocation::round() const { return one_sample ? 1 : std::accumulate(counts.begin(), counts.end(), 0); }
+int Allocation::round() const { return one_sample || path ? 1 : std::accumulate(counts.begin(), counts.end(), 0); }
 
 Layout Allocation::layout(std::span<const Technique> catalogue) const {
   if (one_sample) return shared_layout(techniques, catalogue).layout;
@@ -100,7 +100,11 @@ Layout Allocation::layout(std::span<const Technique> catalogue) const {
   for (std::size_t i = 0; i < techniques.size(); ++i) {
     for (int j = 0; j < counts[i]; ++j) layout.append(catalogue[static_cast<std::size_t>(techniques[i])].layout);
   }
-  return layout;
+  if (!path) return layout;
+  layout.append(path->each);
+  Layout whole = path->start;
+  for (int vertex = 0; vertex < path->vertices; ++vertex) whole.append(layout);
+  return whole;
 }
 
 // The menu. To add a heuristic: its kind in estimators/kernels.h, its weight in heuristics.h, its line here (an
@@ -182,8 +186,25 @@ std::vector<EstimatorInfo> EstimatorCatalogue::list() const {
       {"cosine", "directional form: by the cosine with the normal", "Veach (1997), section 8.2.2"},
       {"surface", "surface form: uniform over the area of all surfaces, emitting or not",
        "Veach (1997), section 8.2.2"},
+      {"light-power", "as light, with lights chosen in proportion to the power they emit",
+       "Shirley, Wang & Zimmerman, Monte Carlo techniques for direct lighting calculations (1996)"},
+      {"light-bvh", "as light, with lights chosen by a tree of them, likelier the more they can send to the point",
+       "Conty Estevez & Kulla, Importance sampling of many lights with adaptive tree splitting (2018)"},
+      {"light-solid-angle",
+       "as light, with the point uniform in solid angle on rectangles, triangles and spheres (also "
+       "light-power-solid-angle, light-bvh-solid-angle)",
+       "Arvo (1995); Urena, Fajardo & King (2013)"},
   };
   for (const Entry& entry : entries_) list.push_back(entry.info);
+  list.insert(list.end(),
+              {{"path-light", "paths by next event estimation alone; light that it cannot find is added",
+                "Kajiya, The rendering equation (1986)"},
+               {"path-bsdf", "paths that meet lights by the BSDF's directions alone; delta lights are added",
+                "Kajiya, The rendering equation (1986)"},
+               {"path-balance",
+                "both at every vertex, weighted by balance (so any heuristic: path-average, path-power:3, ...; with "
+                "@light-bvh+bsdf and the like for other light techniques); N counts paths",
+                "Veach (1997), chapter 9 and section 10.3"}});
   return list;
 }
 
@@ -238,6 +259,53 @@ Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Tec
     estimator.heuristic = {};
     if (one_sample) estimator.allocation = {estimator.allocation.techniques, {1}};
   }
+  return estimator;
+}
+
+Estimator EstimatorCatalogue::parse(const std::string& name, const IntegralSource& source) const {
+  if (const PathShape* shape = source.path()) return parse_path(name, source.techniques(), *shape);
+  return parse(name, source.techniques());
+}
+
+bool is_path_estimator(std::string_view name) { return name.starts_with(kPathPrefix); }
+
+Estimator EstimatorCatalogue::parse_path(const std::string& name, std::span<const Technique> techniques,
+                                         const PathShape& shape) const {
+  if (!is_path_estimator(name)) {
+    fail(ExitCode::kBadInput, "there is no estimator '{}' of paths, whose names begin with '{}'", name, kPathPrefix);
+  }
+  const std::string_view bare = std::string_view(name).substr(kPathPrefix.size());
+  const int bsdf = find(techniques, "bsdf").value();
+  const auto pair_with = [&](int light) { return Allocation{{light, bsdf}, {1, 1}, false, shape}; };
+  if (const auto technique = find(techniques, bare)) {
+    const bool is_light = *technique != bsdf;
+    return {name, {HeuristicKind::kOnly, is_light ? 0.0 : 1.0}, pair_with(is_light ? *technique : 0)};
+  }
+  const auto at = bare.find('@');
+  Estimator estimator;
+  estimator.name = name;
+  try {
+    parse_heuristic(estimator, bare.substr(0, at), techniques);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::kBadInput) throw;
+    std::string_view message = error.what();
+    fail(ExitCode::kBadInput, "estimator '{}' of paths: {}", name, message);
+  }
+  if (!is_fold(estimator.heuristic.kind) || estimator.allocation.one_sample) {
+    fail(ExitCode::kBadInput, "estimator '{}': optimal and one-sample weights are for direct lighting, not for paths",
+         name);
+  }
+  estimator.allocation = pair_with(0);
+  if (at == std::string_view::npos) return estimator;
+  const Allocation asked = parse_allocation(name, bare.substr(at + 1), techniques);
+  if (asked.techniques.size() != 2 || asked.techniques[1] != bsdf || asked.counts != std::vector{1, 1}) {
+    auto lights = names_of(techniques);
+    lights.pop_back();
+    fail(ExitCode::kBadInput,
+         "estimator '{}': a path takes one sample of a light technique ({}) and one of bsdf at each vertex", name,
+         fmt::join(lights, ", "));
+  }
+  estimator.allocation = pair_with(asked.techniques[0]);
   return estimator;
 }
 

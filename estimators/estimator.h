@@ -20,6 +20,8 @@ struct Allocation {
   std::vector<int> counts;
   /// A round is one sample, of technique i with probability counts[i] / Σ counts.
   bool one_sample = false;
+  /// A round is one path, with a sample of each technique at every vertex.
+  std::optional<PathShape> path = std::nullopt;
 
   /// Samples of one round: N is a multiple of it.
   int round() const;
@@ -58,6 +60,12 @@ class EstimatorCatalogue {
   /// over all techniques of a scene that lacks those two. The name of a technique alone is that
   /// technique's own estimator. Throws Error(kBadInput) that says what is wrong and what the scene offers.
   Estimator parse(const std::string& name, std::span<const Technique> techniques) const;
+  /// path-HEURISTIC[:PARAMETER][@LIGHT+bsdf] or path-TECHNIQUE, of a source of paths: a light technique and the BSDF's,
+  /// one sample of each at every vertex. The heuristic weights those; path-TECHNIQUE takes its own sample alone, and of
+  /// the other's what it could not have found. All estimators of one light technique share their paths.
+  Estimator parse_path(const std::string& name, std::span<const Technique> techniques, const PathShape& shape) const;
+  /// Whichever of the two the source takes.
+  Estimator parse(const std::string& name, const IntegralSource& source) const;
 
  private:
   /// A heuristic's one parameter: a number from `least` to `most`.
@@ -77,6 +85,9 @@ class EstimatorCatalogue {
 
   std::vector<Entry> entries_;
 };
+
+/// Whether the name is one of a path's estimator: it begins with "path-".
+bool is_path_estimator(std::string_view name);
 
 /// EstimatorCatalogue::parse with the built-in heuristics.
 Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques);

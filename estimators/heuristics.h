@@ -7,6 +7,7 @@
 //
 // unbiased for any weights with Σ_i w_i(x) = 1 where f(x) ≠ 0 and w_i(x) = 0 where p_i(x) = 0. Here
 //
+//   only i    w_i = 1                               technique i alone, of samples that others are drawn beside
 //   average   w_i = 1/n                             the mean of the techniques' own estimators
 //   balance   w_i = c_i p_i / Σ_k c_k p_k           eq. 9.8
 //   power β   w_i = (c_i p_i)^β / Σ_k (c_k p_k)^β   section 9.2.3
@@ -116,6 +117,8 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
   switch (heuristic.kind) {
     case HeuristicKind::kSingle:
       return F(T(1));
+    case HeuristicKind::kOnly:
+      return F(i == static_cast<int>(heuristic.parameter) ? T(1) : T(0));
     case HeuristicKind::kAverage:
       return F(T(1) / static_cast<T>(techniques));
     case HeuristicKind::kBalance: {

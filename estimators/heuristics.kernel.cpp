@@ -22,6 +22,7 @@ void ratios_in_place(const FoldCall<T>& call, Count<kTechniques> techniques) {
   constexpr int kMostTechniques = 16;
   const std::size_t rows = static_cast<std::size_t>(call.channels + call.techniques);
   for (int q = 0; q < call.slots; ++q) {
+    if (call.slot_technique[q] < 0) continue;
     T* pdfs = call.terms + (static_cast<std::size_t>(q) * rows + static_cast<std::size_t>(call.channels)) * call.stride;
     for (std::size_t p = 0; p < call.count; p += kWidth<F>) {
       F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
@@ -51,6 +52,12 @@ void weigh(const FoldCall<T>& call, Heuristic heuristic, Count<kTechniques> tech
       const T* pdfs = values + static_cast<std::size_t>(call.channels) * call.stride;
       // One slot a technique: slot q is technique q, and indices are known to the compiler.
       const int i = kSlots > 0 && kSlots == kTechniques ? q : call.slot_technique[q];
+      if (kSlots == 0 && i < 0) {
+        for (int c = 0; c < channels; ++c) {
+          sums[c] = sums[c] + load<F>(values + static_cast<std::size_t>(c) * call.stride);
+        }
+        continue;
+      }
       F ratios[kTechniques > 0 ? kTechniques : kMostTechniques];
       ratios[0] = load<F>(pdfs);
       for (int k = 1; k < techniques; ++k) ratios[k] = load<F>(pdfs + static_cast<std::size_t>(k) * call.stride);
@@ -70,6 +77,8 @@ void weigh_all(const FoldCall<T>& call) {
     T* const* out = call.out + h * call.channels;
     if (call.techniques == 2 && call.slots == 2 && call.channels == 1) {
       weigh(call, call.heuristics[h], Count<2>{2}, Count<2>{2}, Count<1>{1}, out);
+    } else if (call.techniques == 2 && call.channels == 3) {
+      weigh(call, call.heuristics[h], Count<2>{2}, Count<0>{call.slots}, Count<3>{3}, out);
     } else {
       weigh(call, call.heuristics[h], Count<0>{call.techniques}, Count<0>{call.slots}, Count<0>{call.channels}, out);
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "estimators/pixel_data.h"
+#include "estimators/transport_calls.h"
 
 namespace halfslope {
 
@@ -15,7 +16,7 @@ struct LightingCall {
   const PixelData<T>* pixel;
   LightingTechnique technique;
   int channels;  ///< 1 or 3
-  bool choose;   ///< whether the first dimension chooses what an area technique draws its point on
+  bool choose;   ///< whether the first dimension chooses: what an area technique draws its point on, or a lobe
   const std::uint32_t* const* high;
   const std::uint32_t* const* low;
   std::size_t count;
@@ -27,6 +28,7 @@ struct LightingCall {
 /// weights are not known before many rounds are.
 enum class HeuristicKind : std::uint8_t {
   kSingle,
+  kOnly,
   kAverage,
   kBalance,
   kPower,
@@ -48,7 +50,7 @@ using WeightFunction = double (*)(const double* ratios, int techniques, int i);
 
 struct Heuristic {
   HeuristicKind kind = HeuristicKind::kSingle;
-  double parameter = 0;             ///< β of the power heuristic, α of the cutoff heuristic
+  double parameter = 0;             ///< β of power, α of cutoff, the technique in the set of only
   WeightFunction custom = nullptr;  ///< of kCustom
 };
 
@@ -59,7 +61,7 @@ struct FoldCall {
   T* terms;  ///< densities are overwritten: with c_k p_k over the largest of them
   std::size_t stride, count;
   int slots, channels, techniques;
-  const int* slot_technique;    ///< which technique of the set each slot draws
+  const int* slot_technique;    ///< which technique of the set each slot draws; −1: a term of weight 1
   const T* counts;              ///< samples of each technique in a round
   const Heuristic* heuristics;  ///< folds all
   int heuristic_count;
@@ -82,6 +84,10 @@ struct EstimatorKernels {
   void (*fold_f64)(const FoldCall<double>&);
   AccumulateValues<float> accumulate_f32;
   AccumulateValues<double> accumulate_f64;
+  void (*point_f32)(const PointCall<float>&);
+  void (*point_f64)(const PointCall<double>&);
+  void (*paths_f32)(const PathCall<float>&);
+  void (*paths_f64)(const PathCall<double>&);
 };
 
 }  // namespace halfslope

@@ -18,7 +18,8 @@ void sample(const LightingCall<T>& call) {
 extern "C" __attribute__((visibility("default"))) const void* halfslope_estimator_kernels() {
   using namespace halfslope::kernel;
   static constexpr halfslope::EstimatorKernels kTable = {
-      sample<float>, sample<double>, fold<float>, fold<double>, accumulate<float>, accumulate<double>,
+      sample<float>,      sample<double>,      fold<float>,          fold<double>,       accumulate<float>,
+      accumulate<double>, sample_point<float>, sample_point<double>, trace_paths<float>, trace_paths<double>,
   };
   return &kTable;
 }

@@ -3,7 +3,7 @@
 //
 // Each class has
 //   evaluate(wi)          f_r cos θ_i per channel and the density of technique `bsdf`, for wi.z > 0;
-//   draw(u1, u2)          a direction of technique `bsdf`; below the horizon it is worth nothing;
+//   draw(u_lobe, u1, u2)  a direction of technique `bsdf`; below the horizon it is worth nothing;
 //   weigh(wi, w, pdf)     for a direction so drawn: w = f_r cos θ_i / p per channel, and p, without what cancels.
 #pragma once
 
@@ -45,7 +45,7 @@ class Diffuse {
     for (int c = 0; c < C; ++c) r.cosine_brdf[c] = F(albedo_[c]) * r.pdf;
     return r;
   }
-  Vec<F> draw(const F& u1, const F& u2) const { return cosine_hemisphere(u1, u2); }
+  Vec<F> draw(const F& /*u_lobe*/, const F& u1, const F& u2) const { return cosine_hemisphere(u1, u2); }
   void weigh(const Vec<F>& wi, F* weight, F& pdf) const {
     pdf = wi.z * F(std::numbers::inv_pi_v<T>);
     for (int c = 0; c < C; ++c) weight[c] = F(albedo_[c]);
@@ -78,7 +78,7 @@ class RoughConductor {
     for (int c = 0; c < C; ++c) r.cosine_brdf[c] = r.cosine_brdf[c] * fr_cos;
     return r;
   }
-  Vec<F> draw(const F& u1, const F& u2) const {
+  Vec<F> draw(const F& /*u_lobe*/, const F& u1, const F& u2) const {
     const Vec<F> m = sample_ggx_visible_normal(alpha_, wo_, u1, u2);
     return F(T(2)) * dot(m, wo_) * m - wo_;
   }
@@ -114,7 +114,7 @@ class RoughConductor {
 };
 
 /// f_r = k_d/π + k_s (n+2)/(2π) cosⁿα with α the angle to the mirror direction R. A share of the samples is drawn about
-/// R by (n+1)/(2π) cosⁿα, the rest by the cosine; the azimuth's number also chooses, rescaled (Mitsuba 0.6, phong.cpp).
+/// R by (n+1)/(2π) cosⁿα, the rest by the cosine (Mitsuba 0.6, phong.cpp).
 template <class F, int C>
 class Phong {
  public:
@@ -143,13 +143,12 @@ class Phong {
     for (int c = 0; c < C; ++c) r.cosine_brdf[c] = fma(F(lobe_[c]), power, F(diffuse_[c])) * wi.z;
     return r;
   }
-  Vec<F> draw(const F& u1, const F& u2) const {
+  Vec<F> draw(const F& u_lobe, const F& u1, const F& u2) const {
     const T share = pixel_.specular_share;
     if (share == 0) return cosine_hemisphere(u1, u2);
     if (share == 1) return about_mirror(u1, u2);
-    const auto specular = u2 < F(share);
-    const F rescaled = select(specular, u2 / F(share), (u2 - F(share)) / F(1 - share));
-    const Vec<F> lobe = about_mirror(u1, rescaled), cosine = cosine_hemisphere(u1, rescaled);
+    const auto specular = u_lobe < F(share);
+    const Vec<F> lobe = about_mirror(u1, u2), cosine = cosine_hemisphere(u1, u2);
     return {select(specular, lobe.x, cosine.x), select(specular, lobe.y, cosine.y), select(specular, lobe.z, cosine.z)};
   }
   void weigh(const Vec<F>& wi, F* weight, F& pdf) const {

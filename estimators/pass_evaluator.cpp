@@ -9,8 +9,10 @@
 namespace halfslope {
 namespace {
 
-/// Samples of a block: its terms stay in the first cache for a pair of techniques, its points beside them.
+/// The most samples of a block: its terms stay in the first cache for a pair of techniques, its points beside them.
 constexpr std::uint64_t kBlock = 32;
+/// Of paths, which have more of both.
+constexpr std::uint64_t kPathBlock = 8;
 
 }  // namespace
 
@@ -23,12 +25,19 @@ PassEvaluator<T>::PassEvaluator(std::unique_ptr<Sampler> sampler, std::span<cons
       heuristics_(std::move(heuristics)),
       rounds_(std::move(rounds)),
       channels_(channels),
+      block_(allocation_.path ? kPathBlock : kBlock),
       layout_(allocation_.layout(techniques)),
       kernels_(kernels<EstimatorKernels>()) {
   for (const int count : allocation_.counts) counts_.push_back(static_cast<T>(count));
   if (allocation_.one_sample) {
     one_sample_.emplace(allocation_, techniques);
     for (std::size_t i = 0; i < counts_.size(); ++i) slot_technique_.push_back(static_cast<int>(i));
+  } else if (allocation_.path) {
+    calls_.push_back({kPath, 0, 0, allocation_.techniques});
+    slot_technique_.push_back(-1);
+    for (int vertex = 0; vertex < allocation_.path->vertices; ++vertex) {
+      for (std::size_t i = 0; i < counts_.size(); ++i) slot_technique_.push_back(static_cast<int>(i));
+    }
   } else {
     int dim = 0;
     for (std::size_t i = 0; i < allocation_.techniques.size(); ++i) {
@@ -98,8 +107,8 @@ void PassEvaluator<T>::make_points(StreamKey key, std::uint32_t pixel, std::uint
   constexpr bool kLowWords = std::is_same_v<T, double>;
   const auto make = [&](std::uint64_t count) {
     sampler_->prepare({count, &layout_, key, pixel, replicate, kLowWords});
-    for (std::uint64_t first = 0; first < count; first += kBlock) {
-      points_.reset(layout_.dims(), static_cast<int>(std::min(kBlock, count - first)), kLowWords);
+    for (std::uint64_t first = 0; first < count; first += block_) {
+      points_.reset(layout_.dims(), static_cast<int>(std::min(block_, count - first)), kLowWords);
       sampler_->fill(first, points_);
     }
   };
@@ -124,8 +133,8 @@ void PassEvaluator<T>::draw(const Integral& integral) {
 
 template <class T>
 void PassEvaluator<T>::sum_points(const Integral& integral, std::uint64_t begin, std::uint64_t end) {
-  for (std::uint64_t first = begin; first < end; first += kBlock) {
-    const int samples = static_cast<int>(std::min(kBlock, end - first));
+  for (std::uint64_t first = begin; first < end; first += block_) {
+    const int samples = static_cast<int>(std::min(block_, end - first));
     points_.reset(layout_.dims(), samples, std::is_same_v<T, double>);
     sampler_->fill(first, points_);
     draw(integral);

@@ -50,6 +50,7 @@ class PassEvaluator {
   std::vector<Heuristic> heuristics_, folds_;  ///< all, and those that are folds
   std::vector<std::uint64_t> rounds_;
   int channels_;
+  std::uint64_t block_;  ///< samples that are worked on together
   Layout layout_;
   std::vector<TechniqueCall> calls_;
   std::vector<int> slot_technique_;

@@ -7,7 +7,8 @@
 
 namespace halfslope {
 
-/// The ways to draw a direction or a point of light, in the order of DirectLighting's techniques.
+/// The ways to draw a direction or a point of light that plain scenes have kernels of their own for: the first of
+/// DirectLighting's techniques, in their order.
 enum class LightingTechnique : std::uint8_t { kLight, kBsdf, kHemisphere, kCosine, kSurface };
 inline constexpr int kLightingTechniques = 5;
 

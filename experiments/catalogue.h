@@ -33,6 +33,10 @@ class Catalogue {
   /// Makes the scene of that full name (parameters included); null resolution: the scene's own.
   using MakeScene =
       std::function<std::unique_ptr<IntegralSource>(const std::string& name, const Resolution& resolution)>;
+  /// What is asked of paths beside what the scene says.
+  struct PathWishes {
+    std::optional<int> max_depth, rr_depth;  ///< as PathOptions has them
+  };
 
   static Catalogue built_in();
 
@@ -43,6 +47,11 @@ class Catalogue {
   /// A catalogue scene ("name" or "name:parameters"; an integrand's other spelling too, "sobol_g_d4"), or a Mitsuba
   /// scene where the name ends in ".xml". Throws Error(kBadInput) naming the nearest scene where there is none.
   std::unique_ptr<IntegralSource> make_scene(const std::string& name, const Resolution& resolution) const;
+  /// Whether the scene is rendered, so that light travels along paths in it.
+  bool has_paths(const std::string& name) const;
+  /// The same scene as integrals over paths.
+  std::unique_ptr<IntegralSource> make_paths(const std::string& name, const Resolution& resolution,
+                                             const PathWishes& wishes) const;
 
  private:
   struct Entry {

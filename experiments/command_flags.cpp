@@ -1,6 +1,7 @@
 #include "experiments/command_flags.h"
 
 #include "samplers/file_points.h"
+#include "scenes/catalogue.h"
 
 namespace halfslope {
 
@@ -19,8 +20,15 @@ Precision parse_precision(const std::string& text) {
 
 std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const std::string& scene,
                                             const Catalogue::Resolution& resolution) {
-  if (scene.ends_with(".xml")) return catalogue.make_scene(scene, resolution);
+  if (is_scene_file(scene)) return catalogue.make_scene(scene, resolution);
   return flag("--scene", [&] { return catalogue.make_scene(scene, resolution); });
+}
+
+std::unique_ptr<IntegralSource> make_path_source(const Catalogue& catalogue, const std::string& scene,
+                                                 const Catalogue::Resolution& resolution,
+                                                 const Catalogue::PathWishes& wishes) {
+  if (is_scene_file(scene)) return catalogue.make_paths(scene, resolution, wishes);
+  return flag("--scene", [&] { return catalogue.make_paths(scene, resolution, wishes); });
 }
 
 std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::string& sampler, const char* flag_name) {

@@ -32,6 +32,11 @@ Precision parse_precision(const std::string& text);
 std::unique_ptr<IntegralSource> make_source(const Catalogue& catalogue, const std::string& scene,
                                             const Catalogue::Resolution& resolution);
 
+/// The same as integrals over paths.
+std::unique_ptr<IntegralSource> make_path_source(const Catalogue& catalogue, const std::string& scene,
+                                                 const Catalogue::Resolution& resolution,
+                                                 const Catalogue::PathWishes& wishes);
+
 /// The sampler of a flag, which `flag_name` names: likewise.
 std::unique_ptr<Sampler> make_sampler(const Catalogue& catalogue, const std::string& sampler, const char* flag_name);
 

@@ -56,6 +56,7 @@ struct RenderArguments {
   std::string scene, estimator, sampler = "halton-owen", resolution, precision = "f32", out;
   std::uint64_t samples = 64, seed = 1;
   std::uint32_t replicate = 0;
+  std::optional<int> max_depth;  ///< of paths
   int threads = 0;
   bool quiet = false;
 };
@@ -67,7 +68,8 @@ struct ReferenceArguments {
   std::optional<double> relative_error;
   std::int64_t most_replicates = 1 << 14;
   int threads = 0;
-  bool quiet = false, no_cache = false, json = false;
+  std::optional<int> max_depth;  ///< of paths
+  bool quiet = false, no_cache = false, json = false, paths = false;
 };
 int reference_command(const ReferenceArguments& arguments, const Catalogue& catalogue);
 

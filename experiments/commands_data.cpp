@@ -69,7 +69,10 @@ int points_command(const PointsArguments& a, const Catalogue& catalogue) {
 int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   const Precision precision = parse_precision(a.precision);
-  const auto source = make_source(catalogue, a.scene, parse_resolution(a.resolution));
+  const auto resolution = parse_resolution(a.resolution);
+  const auto source = is_path_estimator(a.estimator)
+                          ? make_path_source(catalogue, a.scene, resolution, {a.max_depth, std::nullopt})
+                          : make_source(catalogue, a.scene, resolution);
   RenderSettings settings;
   settings.sampler = a.sampler;
   settings.samples = a.samples;
@@ -89,7 +92,9 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
 
 int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
-  const auto source = make_source(catalogue, a.scene, parse_resolution(a.resolution));
+  const auto resolution = parse_resolution(a.resolution);
+  const auto source = a.paths ? make_path_source(catalogue, a.scene, resolution, {a.max_depth, 0})
+                              : make_source(catalogue, a.scene, resolution);
   std::vector<int> pixels(static_cast<std::size_t>(source->pixels()));
   for (std::size_t p = 0; p < pixels.size(); ++p) pixels[p] = static_cast<int>(p);
   ReferenceGoal goal;

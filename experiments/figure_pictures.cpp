@@ -110,9 +110,17 @@ Canvas draw_pictures_figure(const FigureRequest& request, const Catalogue& catal
   if (count > 4)
     fail(ExitCode::kUsage, "--estimators and --samplers: at most 4 pictures side by side, found {}", count);
   const std::uint64_t samples = spec.samples.counts.empty() ? defaults.samples : spec.samples.counts.front();
-  if (!make_source(catalogue, scene, std::nullopt)->takes_resolution())
+  const auto of_path = [](const std::string& name) { return is_path_estimator(name); };
+  const bool paths = std::all_of(estimators.begin(), estimators.end(), of_path);
+  if (!paths && std::any_of(estimators.begin(), estimators.end(), of_path))
+    fail(ExitCode::kUsage, "--estimators: pictures of paths and of direct light have nothing to be compared by");
+  const auto make = [&](const Catalogue::Resolution& resolution) {
+    return paths ? make_path_source(catalogue, scene, resolution, {spec.max_depth, spec.russian_roulette})
+                 : make_source(catalogue, scene, resolution);
+  };
+  if (!make(std::nullopt)->takes_resolution())
     fail(ExitCode::kUsage, "--scene: '{}' has no picture; a rendered scene with a camera is needed", scene);
-  const auto source = make_source(catalogue, scene, spec.resolution ? *spec.resolution : defaults.resolution);
+  const auto source = make(spec.resolution ? *spec.resolution : defaults.resolution);
   const double stops = request.exposure.value_or(defaults.exposure);
 
   std::vector<RenderSettings> jobs;

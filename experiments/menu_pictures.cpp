@@ -1,6 +1,7 @@
 #include <memory>
 #include <utility>
 
+#include "estimators/path_transport.h"
 #include "experiments/commands.h"
 #include "experiments/menu.h"
 
@@ -20,6 +21,9 @@ Command add_render(CLI::App& app) {
   add_seed(*command, render.seed);
   command->add_option("--replicate", render.replicate, "which randomisation")->capture_default_str()->type_name("K");
   command->add_option("--resolution", render.resolution, "WIDTH,HEIGHT")->type_name("W,H");
+  command->add_option("--max_depth", render.max_depth, "of paths: 1 sees emitters, 2 light that is scattered once")
+      ->type_name("D")
+      ->check(CLI::Range(1, kMostDepth));
   command->add_option("--precision", render.precision, "f32 or f64")->capture_default_str()->type_name("P");
   command->add_option("--out,-o", render.out, "image file (default: SCENE.exr)")->type_name("FILE");
   add_threads(*command, render.threads, "threads (default: all cores)");
@@ -50,6 +54,10 @@ Command add_reference(CLI::App& app) {
       ->check(CLI::Range(16, 1 << 24));
   command->add_option("--out,-o", reference.out, "write an EXR instead of CSV")->type_name("FILE");
   add_threads(*command, reference.threads, "threads (default: all cores)");
+  command->add_flag("--paths", reference.paths, "of all light along paths, not of direct light alone");
+  command->add_option("--max_depth", reference.max_depth, "of --paths: 1 sees emitters, 2 light that is scattered once")
+      ->type_name("D")
+      ->check(CLI::Range(1, kMostDepth));
   command->add_flag("--no-cache", reference.no_cache, "neither read nor write the cache of references");
   command->add_flag("--json", reference.json, "as JSON");
   command->add_flag("--quiet", reference.quiet, "no progress");

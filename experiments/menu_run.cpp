@@ -14,7 +14,7 @@ std::string key_help(const std::string& key) {
       {"name", "the experiment's name; the default run folder is out/NAME"},
       {"scene", "see `halfslope list scenes`; or paths of Mitsuba 3 .xml files"},
       {"estimators",
-       "HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: light, bsdf, average, balance, "
+       "[path-]HEURISTIC[:PARAMETER][@TECHNIQUE[*COUNT]+...], or a technique; default: light, bsdf, average, balance, "
        "power, or what the scene has instead"},
       {"samplers", "see `halfslope list samplers`"},
       {"samples", "sample counts N: 4:1024 for the powers of two from 4 to 1024, or a list"},
@@ -29,6 +29,8 @@ std::string key_help(const std::string& key) {
       {"target", "'rmse 5%': replicates are added until every rmse is known to ±5 %, at most --replicates (4096)"},
       {"budget", "60s, 2min or 1h: replicates are added where they narrow most, until the time is spent"},
       {"timing", "how often to time every cell by itself, such as 15, or none (default none)"},
+      {"max_depth", "of paths: 1 sees emitters, 2 light that is scattered once (default: the scene's, or 8)"},
+      {"russian_roulette", "the depth from which it ends paths, or none (default: the scene's, or none)"},
       {"checks",
        "theorems to hold the results against, balance-bound,one-sample-balance,average-bound,exact-variance, or none "
        "(default none)"},

@@ -19,8 +19,7 @@ constexpr double kSpace = 3;
 constexpr double kUsualWidth = 150;  // of a picture, in points
 
 std::optional<Scene> scene_of(const std::string& name) {
-  if (name.ends_with(".xml")) return load_scene(name);
-  if (shipped_scene_text(name)) return load_catalogue_scene(name);
+  if (is_scene_file(name) || shipped_scene_text(name.substr(0, name.find(':')))) return load_named_scene(name);
   return std::nullopt;
 }
 

@@ -16,6 +16,7 @@
 #include "experiments/stopping_keys.h"
 #include "experiments/theory.h"
 #include "samplers/file_points.h"
+#include "scenes/catalogue.h"
 
 namespace halfslope {
 namespace {
@@ -76,25 +77,40 @@ std::vector<std::uint64_t> legal_counts(const Spec& spec, const Estimator& estim
   return legal;
 }
 
-PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std::string& name, Plan& plan) {
+std::unique_ptr<IntegralSource> make_source(const Spec& spec, const Catalogue& catalogue, const std::string& name,
+                                            bool paths, Plan& plan) {
+  const auto make = [&](const Catalogue::Resolution& resolution) {
+    if (paths) return catalogue.make_paths(name, resolution, {spec.max_depth, spec.russian_roulette});
+    return catalogue.make_scene(name, resolution);
+  };
+  // A resolution is for those of several scenes that have one; of a lone scene it is a mistake where it means nothing.
+  if (!spec.resolution || spec.scenes.size() == 1) return make(spec.resolution);
+  auto source = make(std::nullopt);
+  if (source->takes_resolution()) return make(spec.resolution);
+  plan.skips.push_back(fmt::format("{}: is no picture: resolution does not apply", name));
+  return source;
+}
+
+// Those of the spec's estimators that are of paths, or those that are not.
+std::vector<std::string> estimators_of(const Spec& spec, bool paths) {
+  std::vector<std::string> names;
+  std::ranges::copy_if(spec.estimators, std::back_inserter(names),
+                       [&](const std::string& name) { return is_path_estimator(name) == paths; });
+  return names;
+}
+
+PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std::string& name, bool paths, Plan& plan) {
   PlannedScene scene;
   scene.name = name;
-  const auto make = [&] {
-    // A resolution is for those of several scenes that have one; of a lone scene it is a mistake where it means
-    // nothing.
-    if (!spec.resolution || spec.scenes.size() == 1) return catalogue.make_scene(name, spec.resolution);
-    auto source = catalogue.make_scene(name, std::nullopt);
-    if (source->takes_resolution()) return catalogue.make_scene(name, spec.resolution);
-    plan.skips.push_back(fmt::format("{}: is no picture: resolution does not apply", name));
-    return source;
-  };
+  scene.paths = paths;
+  const auto make = [&] { return make_source(spec, catalogue, name, paths, plan); };
   // A file's fault stays the file's, whoever named it: its errors begin with its own line.
-  scene.source = name.ends_with(".xml") ? make() : at(spec, "scene", make);
+  scene.source = is_scene_file(name) ? make() : at(spec, "scene", make);
   scene.pixels = choose_pixels(scene.source->pixels(), spec.pixels);
   const auto techniques = scene.source->techniques();
-  for (const auto& estimator : spec.estimators.empty() ? default_estimators(techniques) : spec.estimators) {
+  for (const auto& estimator : spec.estimators.empty() ? default_estimators(techniques) : estimators_of(spec, paths)) {
     try {
-      scene.estimators.push_back(catalogue.estimators.parse(estimator, techniques));
+      scene.estimators.push_back(catalogue.estimators.parse(estimator, *scene.source));
     } catch (const Error& error) {
       if (error.code() != ExitCode::kBadInput) throw;
       // What another of several scenes may take is left out here; what none takes is an error, told below.
@@ -117,6 +133,28 @@ PlannedScene plan_scene(const Spec& spec, const Catalogue& catalogue, const std:
       plan.skips.push_back(fmt::format("{}: no images, since not all pixels are measured", name));
   }
   return scene;
+}
+
+// Each scene as what its estimators integrate: direct light and paths are two integrals, each with its own reference.
+void plan_scenes(const Spec& spec, const Catalogue& catalogue, Plan& plan) {
+  const std::vector<std::string> of_paths = estimators_of(spec, true);
+  const bool direct = spec.estimators.empty() || of_paths.size() < spec.estimators.size();
+  bool some_has_paths = false;
+  for (const auto& name : spec.scenes) {
+    if (direct) plan.scenes.push_back(plan_scene(spec, catalogue, name, false, plan));
+    if (of_paths.empty()) continue;
+    if (!catalogue.has_paths(name)) {
+      plan.skips.push_back(fmt::format("{}: is an integrand without paths; left out: {}", name, joined(of_paths)));
+      plan.left_out.push_back(plan.skips.back());
+      continue;
+    }
+    some_has_paths = true;
+    plan.scenes.push_back(plan_scene(spec, catalogue, name, true, plan));
+    if (direct) plan.scenes.back().name += ":paths";
+  }
+  if (!of_paths.empty() && !some_has_paths) {
+    fail_at(spec, "estimators", fmt::format("'{}' is of paths, and no scene is a rendered one", of_paths.front()));
+  }
 }
 
 // What is wrong with an estimator that no scene takes: as told by the scene that offers most, whose message knows most.
@@ -214,7 +252,7 @@ CellName cell_name(const Plan& plan, const Cell& cell) {
 Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
   Plan plan;
   plan.interval = spec.interval;
-  for (const auto& name : spec.scenes) plan.scenes.push_back(plan_scene(spec, catalogue, name, plan));
+  plan_scenes(spec, catalogue, plan);
   place_estimators(spec, plan);
   const auto is_picture = [](const PlannedScene& scene) { return scene.source->takes_resolution(); };
   const auto gives_rays = [](const PlannedScene& s) { return !s.source->takes_resolution() && s.source->pixels() > 1; };
@@ -243,6 +281,12 @@ Plan make_plan(const Spec& spec, const Catalogue& catalogue) {
           const SamplerInfo& info = sampler->info();
           const Allocation& allocation = scene.estimators[e].allocation;
           const Layout layout = allocation.layout(scene.source->techniques());
+          if (layout.dims() > info.max_dims && scene.paths) {
+            plan.left_out.push_back(fmt::format("{}: has {} dimensions, and paths on scene '{}' take {}: left out",
+                                                info.name, info.max_dims, scene.name, layout.dims()));
+            plan.skips.push_back(plan.left_out.back());
+            continue;
+          }
           if (layout.dims() > info.max_dims) {
             fail_at(spec, "samplers",
                     fmt::format("sampler '{}' has {} dimensions; '{}' on scene '{}' takes {}", info.name, info.max_dims,

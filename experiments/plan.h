@@ -20,6 +20,7 @@ namespace halfslope {
 struct PlannedScene {
   std::string name;
   std::shared_ptr<const IntegralSource> source;
+  bool paths = false;       ///< whether its integrals are over paths, and its estimators of them
   std::vector<int> pixels;  ///< the chosen ones, ascending; indices into the full image
   std::vector<Estimator> estimators;
   std::vector<std::pair<std::string, std::string>> misfits;  ///< estimators that it cannot have, and why

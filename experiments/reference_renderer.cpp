@@ -9,11 +9,11 @@
 #include "core/assertion.h"
 #include "core/atomic_file.h"
 #include "core/error.h"
+#include "core/hash64.h"
 #include "core/kernel_library.h"
 #include "core/version.h"
 #include "estimators/pass_evaluator.h"
 #include "experiments/bytes.h"
-#include "experiments/hash64.h"
 #include "experiments/interrupt.h"
 #include "experiments/message.h"
 #include "experiments/parallel.h"
@@ -38,10 +38,9 @@ ReferenceRenderer::ReferenceRenderer(const IntegralSource& source, const std::st
                                      const std::vector<int>& pixels, const ReferenceGoal& goal,
                                      const ReferenceOptions& options, const SamplerCatalogue& samplers)
     : source_(source), name_(name), pixels_(pixels), options_(options), samplers_(samplers) {
-  for (std::size_t i = 0; i < source.reference_techniques(); ++i) {
-    allocation_.techniques.push_back(static_cast<int>(i));
-    allocation_.counts.push_back(1);
-  }
+  allocation_.techniques = source.reference_techniques();
+  allocation_.counts.assign(allocation_.techniques.size(), 1);
+  if (const PathShape* path = source.path()) allocation_.path = *path;
   const auto round = static_cast<std::uint64_t>(allocation_.round());
   rounds_ = std::max<std::uint64_t>(2, goal.samples / round);
   if (const auto legal = samplers.make("halton-owen")->illegal(rounds_, allocation_.layout(source.techniques()))) {

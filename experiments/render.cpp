@@ -48,7 +48,7 @@ void render_rows(const IntegralSource& source, const RenderSettings& s, const Ca
 Estimator check_render(const IntegralSource& source, const std::string& name, const RenderSettings& s,
                        const Catalogue& catalogue, const RenderFlags& flags) {
   const Estimator estimator = flag(flags.estimator, [&] {
-    if (!name.empty()) return catalogue.estimators.parse(name, source.techniques());
+    if (!name.empty()) return catalogue.estimators.parse(name, source);
     // Both techniques of a rendered scene; what an integrand has.
     return catalogue.estimators.parse(source.techniques().size() > 1 ? "balance" : source.techniques().front().name,
                                       source.techniques());

@@ -44,8 +44,10 @@ struct Spec {
   /// Of a run that decides on the way how many replicates it takes; the key `replicates` sets both.
   std::int64_t most_replicates = 4096;
   bool in_stages() const { return target || budget; }
-  int timing = 0;                   ///< repetitions of each cell's timing; 0: nothing is timed
-  std::vector<std::string> checks;  ///< theorems to hold the results against; in the order of theory_checks()
+  int timing = 0;                       ///< repetitions of each cell's timing; 0: nothing is timed
+  std::optional<int> max_depth;         ///< of paths; absent: the scene's own, or 8
+  std::optional<int> russian_roulette;  ///< from this depth of paths on, 0: none; absent: as the scene says, or none
+  std::vector<std::string> checks;      ///< theorems to hold the results against; in the order of theory_checks()
 
   /// Where each key was set, for messages: "file.toml:3:9" or "--samplers". The empty key is the file itself.
   std::map<std::string, std::string> places;

@@ -21,6 +21,8 @@ std::string canonical_json(const Spec& spec) {
   json["resolution"] = spec.resolution ? nlohmann::json(*spec.resolution) : nlohmann::json();
   json["pixels"] = spec.pixels ? nlohmann::json(*spec.pixels) : nlohmann::json("all");
   json["images"] = spec.images;
+  if (spec.max_depth) json["max_depth"] = *spec.max_depth;
+  if (spec.russian_roulette) json["russian_roulette"] = *spec.russian_roulette;
   json["precision"] = nlohmann::json::array();
   for (Precision precision : spec.precision) json["precision"].push_back(to_string(precision));
   // A path need not be UTF-8; replacing its odd bytes beats refusing it.

@@ -7,6 +7,7 @@
 
 #include "analysis/measures.h"
 #include "core/assertion.h"
+#include "estimators/path_transport.h"
 #include "experiments/joined.h"
 #include "experiments/stopping_keys.h"
 #include "experiments/theory.h"
@@ -262,6 +263,18 @@ const std::vector<Key>& keys() {
       {"budget", "a time above 0 as in '60 s', '2 min' or '1 h', at most 1000 h, or 'none'", false,
        [](Spec& spec, const Key& key, const SpecValue& value) { set_quantity(spec.budget, key, value, parse_budget); }},
       {"timing", "an integer from 3 to 10000, the repetitions, or 'none'", false, set_timing},
+      {"max_depth", fmt::format("an integer from 1 to {}: 1 sees emitters, 2 light that is scattered once", kMostDepth),
+       false,
+       [](Spec& spec, const Key& key, const SpecValue& value) {
+         spec.max_depth = static_cast<int>(integer(key, value, only_item(key, value), 1, kMostDepth));
+       }},
+      {"russian_roulette",
+       fmt::format("'none', or the depth from which it ends paths, an integer from 1 to {}", kMostDepth), false,
+       [](Spec& spec, const Key& key, const SpecValue& value) {
+         const SpecItem& item = only_item(key, value);
+         const bool none = item.text == "none" && item.kind != SpecItem::Kind::kOther;
+         spec.russian_roulette = none ? 0 : static_cast<int>(integer(key, value, item, 1, kMostDepth));
+       }},
       {"checks", fmt::format("{}, a list of different ones, or 'none'", joined(theory_check_names())), true,
        set_checks},
   };

@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "scenes/loader.h"
 #include "scenes/shipped_files.h"
+#include "scenes/substitution.h"
 
 namespace halfslope {
 
@@ -42,14 +43,26 @@ std::optional<std::string_view> shipped_scene_text(std::string_view name) {
 }
 
 Scene load_catalogue_scene(std::string_view name) {
-  if (const auto text = shipped_scene_text(name)) return parse_scene(*text, fmt::format("{}.xml", name));
+  const std::string head(name.substr(0, name.find(':')));
+  if (const auto text = shipped_scene_text(head)) {
+    const SceneName full = parse_scene_name(fmt::format("{}.xml{}", head, name.substr(head.size())));
+    return parse_scene(*text, full.file, full.parameters);
+  }
   std::vector<std::string> names;
   std::string allowed;
   for (const SceneEntry& entry : rendered_scenes()) {
     names.push_back(entry.name);
     allowed += (allowed.empty() ? "" : ", ") + entry.name;
   }
-  fail(ExitCode::kBadInput, "unknown scene '{}', allowed: {}{}", name, allowed, did_you_mean(name, names));
+  fail(ExitCode::kBadInput, "unknown scene '{}', allowed: {}{}", head, allowed, did_you_mean(head, names));
+}
+
+bool is_scene_file(std::string_view name) { return name.ends_with(".xml") || name.find(".xml:") != name.npos; }
+
+Scene load_named_scene(std::string_view name) {
+  if (!is_scene_file(name)) return load_catalogue_scene(name);
+  const SceneName full = parse_scene_name(name);
+  return load_scene(full.file, full.parameters);
 }
 
 }  // namespace halfslope

@@ -22,7 +22,14 @@ std::vector<SceneEntry> rendered_scenes();
 /// The Mitsuba XML of a shipped scene; nothing if there is none of that name.
 std::optional<std::string_view> shipped_scene_text(std::string_view name);
 
-/// A shipped scene, parsed. Throws Error(kBadInput) naming the nearest if there is none of that name.
+/// A shipped scene, parsed: "cornell-box", or "cornell-box:max_depth=4" with values for its <default>s. Throws
+/// Error(kBadInput) naming the nearest if there is none of that name.
 Scene load_catalogue_scene(std::string_view name);
+
+/// Whether the name is that of a Mitsuba file: "scene.xml", or "scene.xml:name=value,…".
+bool is_scene_file(std::string_view name);
+
+/// A file or a shipped scene, with the values that the name gives.
+Scene load_named_scene(std::string_view name);
 
 }  // namespace halfslope

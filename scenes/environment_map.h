@@ -178,11 +178,11 @@ inline EnvironmentSample<F> sample_environment(const EnvironmentMapData<scalar_t
     for (int c = 0; c < 3; ++c) sample.radiance[c] = F(map.constant[c]);
     return sample;
   }
-  constexpr auto kLanes = static_cast<std::size_t>(kWidth<F>);
-  alignas(64) T x[kLanes], y[kLanes], column[kLanes], row[kLanes];
+  constexpr auto kPacketLanes = static_cast<std::size_t>(kWidth<F>);
+  alignas(64) T x[kPacketLanes], y[kPacketLanes], column[kPacketLanes], row[kPacketLanes];
   store(x, u1), store(y, u2);
   environment::Cell<F> cell;
-  for (std::size_t l = 0; l < kLanes; ++l) {
+  for (std::size_t l = 0; l < kPacketLanes; ++l) {
     const std::int32_t j = environment::interval_of(map.rows, map.height - 1, y[l]);
     const T* columns = map.columns + static_cast<std::size_t>(j) * static_cast<std::size_t>(map.width + 1);
     const std::int32_t i = environment::interval_of(columns, map.width, x[l]);

@@ -35,7 +35,7 @@ std::vector<Estimates> estimate_together(const IntegralSource& source, int pixel
   std::vector<Heuristic> heuristics;
   Allocation allocation;
   for (const std::string& name : estimators) {
-    const Estimator estimator = catalogue.parse(name, source.techniques());
+    const Estimator estimator = catalogue.parse(name, source);
     EXPECT_TRUE(heuristics.empty() || estimator.allocation == allocation) << name;
     heuristics.push_back(estimator.heuristic);
     allocation = estimator.allocation;

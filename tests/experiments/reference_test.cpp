@@ -82,7 +82,7 @@ class Secretive final : public IntegralSource {
   int height() const override { return source_.height(); }
   int channels() const override { return source_.channels(); }
   std::span<const Technique> techniques() const override { return source_.techniques(); }
-  std::size_t reference_techniques() const override { return source_.reference_techniques(); }
+  std::vector<int> reference_techniques() const override { return source_.reference_techniques(); }
   PixelIntegral pixel(int index) const override { return source_.pixel(index); }
   std::string fingerprint() const override { return source_.fingerprint(); }
 

@@ -1,0 +1,162 @@
+#include "estimators/path_transport.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "core/error.h"
+#include "core/kernel_library.h"
+#include "estimators/camera.h"
+#include "estimators/kernels.h"
+#include "estimators/skip_worth.h"
+#include "scenes/fingerprint.h"
+
+namespace halfslope {
+namespace {
+
+struct NamedWay {
+  const char* name;
+  LightWay way;
+};
+
+/// The light techniques, in the order of the source's techniques.
+constexpr std::array kLightWays = {
+    NamedWay{"light", {LightChoice::kUniform, false}},
+    NamedWay{"light-power", {LightChoice::kPower, false}},
+    NamedWay{"light-bvh", {LightChoice::kBvh, false}},
+    NamedWay{"light-solid-angle", {LightChoice::kUniform, true}},
+    NamedWay{"light-power-solid-angle", {LightChoice::kPower, true}},
+    NamedWay{"light-bvh-solid-angle", {LightChoice::kBvh, true}},
+};
+
+/// Paths through one pixel. Belongs to one thread.
+class PixelPaths final : public Integral {
+ public:
+  PixelPaths(const LazyTransport& transport, Camera camera, std::span<const float> filter, const PathOptions& options,
+             int channels, const PathDims& dims)
+      : transport_(transport), camera_(camera), filter_(filter), options_(options), channels_(channels), dims_(dims) {}
+
+  void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<float>& terms) const override {
+    trace(f32_, call, points, terms, kernels_.paths_f32);
+  }
+  void sample(const TechniqueCall& call, const PointBlock& points, TermBlock<double>& terms) const override {
+    trace(f64_, call, points, terms, kernels_.paths_f64);
+  }
+
+ private:
+  template <class T>
+  void trace(std::optional<CameraData<T>>& camera, const TechniqueCall& call, const PointBlock& points,
+             TermBlock<T>& terms, void (*kernel)(const PathCall<T>&)) const {
+    if (!camera) camera = camera_data<T>(camera_, filter_);
+    const auto dims = static_cast<std::size_t>(points.dims());
+    high_.resize(dims), low_.resize(dims);
+    for (std::size_t d = 0; d < dims; ++d) {
+      high_[d] = points.high(static_cast<int>(d));
+      low_[d] = points.low(static_cast<int>(d));
+    }
+    const TransportData<T>& data = transport_.of<T>();
+    kernel({&data.scene(), &*camera, channels_, options_.max_depth, options_.rr_depth,
+            kLightWays[static_cast<std::size_t>(call.set[0])].way, dims_, high_.data(), low_.data(), points.stride(),
+            terms.stride(), terms.data()});
+  }
+
+  const LazyTransport& transport_;
+  Camera camera_;
+  std::span<const float> filter_;
+  PathOptions options_;
+  int channels_;
+  PathDims dims_;
+  const EstimatorKernels& kernels_ = kernels<EstimatorKernels>();
+  mutable std::optional<CameraData<float>> f32_;
+  mutable std::optional<CameraData<double>> f64_;
+  mutable std::vector<const std::uint32_t*> high_, low_;
+};
+
+Scene with_light(Scene scene) {
+  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(),
+                                 [](const Primitive& p) { return p.emits && (p.radiance > 0).any(); });
+  if (emits || scene.environment || !scene.delta_lights.empty()) return scene;
+  fail(ExitCode::kBadInput,
+       "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
+}
+
+}  // namespace
+
+PathTransport::PathTransport(Scene scene, int width, int height, const PathOptions& options)
+    : scene_(with_light(std::move(scene))),
+      width_(width),
+      height_(height),
+      channels_(is_grey(scene_) ? 1 : 3),
+      options_(options),
+      tracing_(tracing_of(scene_)),
+      intersector_(scene_),
+      filter_(inverse_filter(scene_.sensor)),
+      chooses_(chooses_lobes(scene_)),
+      transport_(scene_, tracing_, true) {
+  const bool choice = transport_.chosen() > 1;
+  for (const NamedWay& light : kLightWays) {
+    techniques_.push_back({light.name, choice ? Layout{{1, 2}} : Layout{{2}}});
+  }
+  techniques_.push_back({"bsdf", chooses_ ? Layout{{1, 2}} : Layout{{2}}});
+  if (!filter_.empty()) shape_.start.groups.push_back(2);
+  if (scene_.sensor.kind == Sensor::Kind::kThinLens && scene_.sensor.aperture_radius > 0) {
+    shape_.start.groups.push_back(2);
+  }
+  shape_.vertices = options_.max_depth - 1;
+  if (options_.rr_depth > 0) shape_.each.groups.push_back(1);
+}
+
+std::vector<int> PathTransport::reference_techniques() const { return {0, static_cast<int>(techniques_.size()) - 1}; }
+
+PixelIntegral PathTransport::pixel(int index) const {
+  // Where the numbers of a path stand: as shape_ and the techniques' layouts have them.
+  PathDims dims;
+  std::int32_t next = 0;
+  const auto take = [&](std::int32_t count) { return std::exchange(next, next + count); };
+  if (!filter_.empty()) dims.film = take(2);
+  if (scene_.sensor.kind == Sensor::Kind::kThinLens && scene_.sensor.aperture_radius > 0) dims.lens = take(2);
+  dims.first_vertex = next;
+  next = 0;
+  if (transport_.chosen() > 1) dims.choice = take(1);
+  dims.light = take(2);
+  if (chooses_) dims.lobe = take(1);
+  dims.bsdf = take(2);
+  if (options_.rr_depth > 0) dims.roulette = take(1);
+  dims.per_vertex = next;
+  PixelIntegral result;
+  const Camera camera = camera_of(scene_.sensor, tracing_, index % width_, index / width_, width_, height_);
+  result.integral = std::make_unique<PixelPaths>(transport_, camera, filter_, options_, channels_, dims);
+  return result;
+}
+
+// Parts of the image: what the ray through a pixel's centre sees.
+std::vector<std::string> PathTransport::regions() const {
+  std::vector<std::string> names = {"background"};
+  for (const Primitive& shape : scene_.primitives) names.push_back(shape.id);
+  return names;
+}
+
+int PathTransport::region(int pixel) const {
+  return 1 + intersector_.first(scene_.sensor.ray(pixel % width_, pixel / width_, width_, height_)).primitive;
+}
+
+std::vector<std::string> PathTransport::skips() const {
+  std::vector<std::string> lines = {"intersection: " + intersector_.why()};
+  lines.push_back(fmt::format("paths: max_depth {}{}", options_.max_depth,
+                              options_.rr_depth > 0 ? fmt::format(", Russian roulette from depth {}", options_.rr_depth)
+                                                    : ", no Russian roulette: no dimension for it"));
+  if (transport_.chosen() == 1)
+    lines.push_back("one light: no light choice, and no dimension for it" + worth(kWorthNoLightChoice));
+  if (!chooses_) lines.push_back("no BSDF chooses between lobes: no dimension for that");
+  if (filter_.empty())
+    lines.push_back("no reconstruction filter: each pixel is its ray, and takes no dimension for it");
+  if (channels_ == 1) lines.push_back("grey scene: one channel" + worth(kWorthOneChannel));
+  return lines;
+}
+
+std::string PathTransport::fingerprint() const {
+  return fmt::format("paths {}x{} depth {} roulette {}\n{}", width_, height_, options_.max_depth, options_.rr_depth,
+                     scene_fingerprint(scene_));
+}
+
+}  // namespace halfslope
