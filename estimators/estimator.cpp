@@ -195,7 +195,6 @@ std::vector<EstimatorInfo> EstimatorCatalogue::list() const {
        "light-power-solid-angle, light-bvh-solid-angle)",
        "Arvo (1995); Urena, Fajardo & King (2013)"},
   };
-  for (const Entry& entry : entries_) list.push_back(entry.info);
   list.insert(list.end(),
               {{"path-light", "paths by next event estimation alone; light that it cannot find is added",
                 "Kajiya, The rendering equation (1986)"},
@@ -205,6 +204,7 @@ std::vector<EstimatorInfo> EstimatorCatalogue::list() const {
                 "both at every vertex, weighted by balance (so any heuristic: path-average, path-power:3, ...; with "
                 "@light-bvh+bsdf and the like for other light techniques); N counts paths",
                 "Veach (1997), chapter 9 and section 10.3"}});
+  for (const Entry& entry : entries_) list.push_back(entry.info);
   return list;
 }
 

@@ -36,6 +36,7 @@ bool chooses_lobes(const Scene& scene) {
   const auto chooses = [](const Bsdf& bsdf) {
     if (is_black(bsdf)) return false;
     if (bsdf.opacity != 1 || bsdf.opacity_texture) return true;
+    if (bsdf.kind == BsdfKind::kPhong) return (bsdf.reflectance > 0).any() && (bsdf.specular > 0).any();
     return bsdf.kind != BsdfKind::kDiffuse && bsdf.kind != BsdfKind::kConductor &&
            bsdf.kind != BsdfKind::kRoughConductor;
   };

@@ -41,7 +41,7 @@ FlatPiece<T> rounded(const PlainFlat& flat, const Vec3& tangent) {
   FlatPiece<T> piece;
   copy(flat.p0, piece.p0), copy(flat.u, piece.u), copy(flat.v, piece.v);
   copy(flat.normal, piece.normal), copy(tangent, piece.tangent);
-  piece.disk = flat.outline == LightKind::kDisk ? T(1) : T(0);
+  piece.outline = static_cast<T>(flat.outline);
   return piece;
 }
 
@@ -203,6 +203,14 @@ void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing) {
   scene_.piece_surface = piece_surface_.data();
   scene_.first_piece = first_piece_.data();
   scene_.attributes = attributed ? attributes_.data() : nullptr;
+  scene_.framed_flats = std::any_of(plain.begin(), plain.end(),
+                                    [](const PlainFlat& flat) { return flat.outline != LightKind::kTriangle; });
+  double reach = 0;
+  for (const Primitive& primitive : scene.primitives) {
+    reach =
+        std::max(reach, tracing.to_kernel(middle(primitive)).cwiseAbs().maxCoeff() + tracing.unit * extent(primitive));
+  }
+  scene_.reach = static_cast<T>(reach);
   if (tracing.embree) {
     scene_.embree = tracing.embree.get();
     scene_.embree_first = EmbreeScene::first_of;

@@ -22,7 +22,7 @@ struct FlatPiece {
   T p0[3], u[3], v[3];
   T normal[3];   ///< of the front, unit length
   T tangent[3];  ///< where its first texture coordinate grows
-  T disk;        ///< 1 of a disk, whose texture coordinates are polar; else 0
+  T outline;     ///< its LightKind
 };
 
 /// What finds a and b of a point p on a flat piece's plane: a = dual_u · p − offset_u.
@@ -117,6 +117,7 @@ enum class LightChoice : std::uint8_t {
 template <class T>
 struct TransportScene {
   const FlatPiece<T>* flats;
+  bool framed_flats;         ///< whether some flat piece is no triangle
   const FlatTest<T>* tests;  ///< parallelograms, then triangles, then disks; none where Embree intersects
   std::int32_t parallelograms, triangles, disks;
   const SpherePiece<T>* spheres;
@@ -147,7 +148,6 @@ struct TransportScene {
   LightBvhData<T> bvh;
   const EnvironmentMapData<T>* environment;  ///< null: nothing beyond the shapes
   std::int32_t environment_light;            ///< its element, or −1
-  T radius;                                  ///< of a ball around the origin of these lengths that holds the scene
 };
 
 }  // namespace halfslope

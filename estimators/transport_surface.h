@@ -121,19 +121,25 @@ template <class F>
 inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, const RayRow<scalar_t<F>>& row, int lane,
                                   const std::int32_t* piece) {
   using T = scalar_t<F>;
-  const F a = load<F>(row.a + lane), b = load<F>(row.b + lane);
+  F a = load<F>(row.a + lane), b = load<F>(row.b + lane);
   const Vec<F> p0 = gather_vec<F>(scene.flats, &FlatPiece<T>::p0, piece);
-  const Vec<F> u = gather_vec<F>(scene.flats, &FlatPiece<T>::u, piece);
+  const Vec<F> u = gather_vec<F>(scene.flats, &FlatPiece<T>::u, piece),
+               v = gather_vec<F>(scene.flats, &FlatPiece<T>::v, piece);
   SurfacePoint<F> point;
   point.normal = gather_vec<F>(scene.flats, &FlatPiece<T>::normal, piece);
-  point.position = p0 + a * u + b * gather_vec<F>(scene.flats, &FlatPiece<T>::v, piece);
-  if constexpr (sizeof(T) == 8) {
-    // Embree's a and b have binary32's digits; the plane has all.
-    if (scene.embree) {
-      const Vec<F> origin = row.origin.template load<F>(lane), direction = row.direction.template load<F>(lane);
-      point.position = origin + (dot(point.normal, p0 - origin) / dot(point.normal, direction)) * direction;
-    }
+  if (scene.embree && (scene.framed_flats || sizeof(T) == 8)) {
+    // Embree knows a and b of triangles, with binary32's digits; the plane has all.
+    const Vec<F> origin = row.origin.template load<F>(lane), direction = row.direction.template load<F>(lane);
+    const F distance = dot(point.normal, p0 - origin) / dot(point.normal, direction);
+    const Vec<F> from_corner = origin + distance * direction - p0;
+    const F uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), along_u = dot(from_corner, u),
+            along_v = dot(from_corner, v), inverse = F(T(1)) / (uu * vv - uv * uv);
+    const F outline = gather_field<F>(scene.flats, &FlatPiece<T>::outline, piece);
+    const mask_t<F> framed = outline != F(sizeof(T) == 8 ? T(-1) : static_cast<T>(LightKind::kTriangle));
+    a = select(framed, (vv * along_u - uv * along_v) * inverse, a);
+    b = select(framed, (uu * along_v - uv * along_u) * inverse, b);
   }
+  point.position = p0 + a * u + b * v;
   point.shading = point.normal;
   if (scene.anisotropic) point.tangent = gather_vec<F>(scene.flats, &FlatPiece<T>::tangent, piece);
   point.u = a;
@@ -158,7 +164,8 @@ inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, cons
   point.u = blend(uvs, 0);
   point.v = blend(uvs, 1);
   if (scene.textures) {
-    const auto disk = gather_field<F>(scene.flats, &FlatPiece<T>::disk, piece) == one;
+    const auto disk =
+        gather_field<F>(scene.flats, &FlatPiece<T>::outline, piece) == F(static_cast<T>(LightKind::kDisk));
     point.u = select(disk, sqrt(fma(a, a, b * b)), point.u);
     point.v = select(disk, turns(b, a), point.v);
   }

@@ -32,7 +32,9 @@ TEST(DirectLighting, ASceneMustEmit) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::kBadInput);
-    EXPECT_STREQ(error.what(), "cellar: nothing in the scene emits; give a shape an <emitter type=\"area\">");
+    EXPECT_STREQ(error.what(),
+                 "cellar: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the "
+                 "scene an emitter");
   }
 }
 
@@ -88,7 +90,8 @@ TEST(DirectLighting, TheSurfaceChoiceTakesADimensionWhereThereAreTwoSurfaces) {
   const DirectLighting several = lighting(scene_of({floor_tile(), light}, {looking({0, 0, 1}, kOrigin)}));
   std::vector<std::string> names;
   for (const Technique& technique : several.techniques()) names.push_back(technique.name);
-  EXPECT_THAT(names, ElementsAre("light", "bsdf", "hemisphere", "cosine", "surface"));
+  EXPECT_THAT(names, ElementsAre("light", "bsdf", "hemisphere", "cosine", "surface", "light-power", "light-bvh",
+                                 "light-solid-angle", "light-power-solid-angle", "light-bvh-solid-angle"));
   EXPECT_THAT(several.techniques()[2].layout.groups, ElementsAre(2));
   EXPECT_THAT(several.techniques()[3].layout.groups, ElementsAre(2));
   EXPECT_THAT(several.techniques()[4].layout.groups, ElementsAre(1, 2));

@@ -149,8 +149,14 @@ TEST(EstimatorCatalogue, EveryEntryIsWhatTheParserKnows) {
   for (const EstimatorInfo& info : EstimatorCatalogue::built_in().list()) {
     EXPECT_FALSE(info.description.empty() || info.reference.empty()) << info.name;
     const std::string name = info.name.substr(0, info.name.find('['));
-    const auto& techniques = name == "mean" ? kIntegrand : kLighting;
-    EXPECT_NO_THROW(parse_estimator(name, techniques)) << name;
+    std::vector<Technique> techniques = name == "mean" ? kIntegrand : kLighting;
+    for (const char* light : {"light-power", "light-bvh", "light-solid-angle"}) techniques.push_back({light, {{2}}});
+    if (is_path_estimator(name)) {
+      const std::vector<Technique> of_paths = {{"light", {{2}}}, {"bsdf", {{2}}}};
+      EXPECT_NO_THROW(EstimatorCatalogue::built_in().parse_path(name, of_paths, {})) << name;
+    } else {
+      EXPECT_NO_THROW(parse_estimator(name, techniques)) << name;
+    }
   }
 }
 

@@ -95,18 +95,22 @@ TYPED_TEST(LocalPixels, TheBsdfsDensityAndWhatFallsBelowTheHorizonMakeOne) {
       const DirectLighting source = lighting(scene);
       const PixelIntegral pixel = source.pixel(0);
       PointBlock points;
-      points.reset(2, kSide / kLanes, true);
+      // A lobe's number, where there is one, is spread evenly over the others' grid by two irrational steps.
+      const int pair = source.techniques()[1].layout.dims() - 2;
+      points.reset(2 + pair, kSide / kLanes, true);
       TermBlock<T> terms;
       const std::vector<int> set = {1, 2};
       terms.reset(1, 1, 2, kSide / kLanes);
       double above = 0, below = 0;
       for (int row = 0; row < kSide; ++row) {
         for (std::size_t i = 0; i < kSide; ++i) {
-          points.high(0)[i] = static_cast<std::uint32_t>((row + 0.5) / kSide * 0x1p32);
-          points.high(1)[i] = static_cast<std::uint32_t>((static_cast<double>(i) + 0.5) / kSide * 0x1p32);
-          points.low(0)[i] = points.low(1)[i] = 0;
+          const double spread = 0.7548776662466927 * row + 0.5698402909980532 * static_cast<double>(i);
+          points.high(0)[i] = static_cast<std::uint32_t>((spread - std::floor(spread)) * 0x1p32);
+          points.high(pair)[i] = static_cast<std::uint32_t>((row + 0.5) / kSide * 0x1p32);
+          points.high(pair + 1)[i] = static_cast<std::uint32_t>((static_cast<double>(i) + 0.5) / kSide * 0x1p32);
+          points.low(0)[i] = points.low(pair)[i] = points.low(pair + 1)[i] = 0;
         }
-        pixel.integral->sample({2, 0, 0, set}, points, terms);
+        pixel.integral->sample({2, pair, 0, set}, points, terms);
         for (std::size_t i = 0; i < kSide; ++i) {
           above += 2 * std::numbers::pi * static_cast<double>(terms.pdf(0, 0)[i]) / (kSide * kSide);
         }

@@ -53,28 +53,28 @@ std::array<Vec3, 3> frame_about(const Vec3& n) {
 }
 
 /// The local direction of a sample of `bsdf`: by the cosine, a mirrored visible normal, or about the mirror direction.
-Vec<double> bsdf_direction(const Bsdf& bsdf, double share, const Vec<double>& wo, double u1, double u2) {
+Vec<double> bsdf_direction(const Bsdf& bsdf, double share, const Vec<double>& wo, double u_lobe, double u1, double u2) {
   if (bsdf.kind == BsdfKind::kRoughConductor) {
     const Vec<double> h = sample_ggx_visible_normal(bsdf.alpha, wo, u1, u2);
     return 2 * dot(wo, h) * h - wo;
   }
-  if (bsdf.kind == BsdfKind::kDiffuse || u2 >= share) {
-    return around(std::sqrt(1 - u1), bsdf.kind == BsdfKind::kDiffuse ? u2 : (u2 - share) / (1 - share));
+  if (bsdf.kind == BsdfKind::kDiffuse || u_lobe >= share) {
+    return around(std::sqrt(1 - u1), u2);
   }
-  const Vec<double> lobe = around(std::pow(1 - u1, 1 / (bsdf.exponent + 1)), u2 / share);
+  const Vec<double> lobe = around(std::pow(1 - u1, 1 / (bsdf.exponent + 1)), u2);
   const auto [x, y, z] = frame_about({-wo.x, -wo.y, wo.z});
   const Vec3 wi = lobe.x * x + lobe.y * y + lobe.z * z;
   return {wi.x(), wi.y(), wi.z()};
 }
 
 /// The world direction of a sample of `bsdf` (1), `hemisphere` (2) or `cosine` (3).
-Vec3 direction(const ReferenceTracer& tracer, int technique, double u1, double u2) {
+Vec3 direction(const ReferenceTracer& tracer, int technique, double u_lobe, double u1, double u2) {
   const auto [x, y, z] = frame_about(tracer.normal());
   const Vec<double> wo = {x.dot(tracer.to_eye()), y.dot(tracer.to_eye()), z.dot(tracer.to_eye())};
   const bool is_phong = tracer.bsdf().kind == BsdfKind::kPhong;
-  const Vec<double> local = technique == 1
-                                ? bsdf_direction(tracer.bsdf(), is_phong ? tracer.specular_share() : 0, wo, u1, u2)
-                                : around(technique == 2 ? 1 - u1 : std::sqrt(1 - u1), u2);
+  const Vec<double> local =
+      technique == 1 ? bsdf_direction(tracer.bsdf(), is_phong ? tracer.specular_share() : 0, wo, u_lobe, u1, u2)
+                     : around(technique == 2 ? 1 - u1 : std::sqrt(1 - u1), u2);
   return local.x * x + local.y * y + local.z * z;
 }
 
@@ -133,14 +133,14 @@ void check_receiver(const Scene& scene, const DirectLighting& source, int pixel,
     for (int l = 0; l < kLanes; ++l) {
       const int pair = layout.dims() - 2;
       const double u1 = seen_as<T>(points, pair, s, l), u2 = seen_as<T>(points, pair + 1, s, l);
+      const double lobe = pair == 1 ? seen_as<T>(points, 0, s, l) : 0;
       const double choice = pair == 1 ? points.high(0)[static_cast<std::size_t>(s * kLanes + l)] * 0x1p-32 : 0;
       ExpectedTerm expected = technique == 0   ? tracer.light_sample(choice, u1, u2)
                               : technique == 4 ? tracer.surface_sample(choice, u1, u2)
-                                               : tracer.direction_sample(direction(tracer, technique, u1, u2));
-      // Which part of a Phong BSDF a number chooses is a matter of rounding beside the border, and where it is
-      // stretched.
+                                               : tracer.direction_sample(direction(tracer, technique, lobe, u1, u2));
+      // Which part of a Phong BSDF a number chooses is a matter of rounding beside the border.
       if (technique == 1 && tracer.bsdf().kind == BsdfKind::kPhong) {
-        expected.grazing = expected.grazing || std::abs(u2 - tracer.specular_share()) < Closeness<T>::kNudge;
+        expected.grazing = expected.grazing || std::abs(lobe - tracer.specular_share()) < Closeness<T>::kNudge;
       }
       ++(expected.grazing ? tally.grazing : tally.compared);
       if (expected.grazing) continue;

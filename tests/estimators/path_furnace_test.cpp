@@ -1,4 +1,5 @@
 // Paths in scenes whose radiance is known: geometric series in closed rooms, lights in spheres.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,8 +16,8 @@ void expect_all(const Scene& scene, const PathOptions& options, double exact, st
   const PathTransport source(scene, 1, 1, options);
   for (const std::string& light : light_techniques()) {
     const auto names = path_estimators(light);
-    const auto f32 = estimate_together<float>(source, 0, names, {.rounds = paths});
-    const auto f64 = estimate_together<double>(source, 0, names, {.rounds = paths, .seed = 2});
+    const auto f32 = estimate_together<float>(source, 0, names, {.estimator = "", .rounds = paths});
+    const auto f64 = estimate_together<double>(source, 0, names, {.estimator = "", .rounds = paths, .seed = 2});
     for (std::size_t k = 0; k < names.size(); ++k) {
       expect_mean(f32[k][0], exact, 1e-5, names[k] + " f32");
       expect_mean(f64[k][0], exact, 1e-9, names[k] + " f64");

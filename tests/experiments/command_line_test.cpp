@@ -87,11 +87,11 @@ TEST_F(CommandLine, AnElementThatIsNotSupportedIsNamedWithItsLine) {
   const std::string xml = write("scene.xml", R"(<scene version="3.0.0">
   <sensor type="radiancemeter"><point name="origin" x="0" y="0" z="1"/><vector name="direction" x="0" y="0" z="-1"/></sensor>
   <shape type="sphere"><emitter type="area"><rgb name="radiance" value="1"/></emitter></shape>
-  <shape type="cylinder"/>
+  <shape type="heightfield"/>
 </scene>
 )");
   const std::string place = "halfslope: " + xml + ":4:";
-  EXPECT_THAT(refusal({"--scene", xml}, 3), AllOf(StartsWith(place), HasSubstr("cylinder")));
+  EXPECT_THAT(refusal({"--scene", xml}, 3), AllOf(StartsWith(place), HasSubstr("heightfield")));
   const std::string toml = write("x.toml", "scene = '" + xml + "'\nsamplers = 'independent'\nsamples = 16\n");
   const Ended ended = command({"run", toml, "--out", out()});
   EXPECT_EQ(ended.code, 3);

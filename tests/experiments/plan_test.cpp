@@ -188,8 +188,11 @@ TEST(Plan, OfSeveralScenesEachHasTheEstimatorsAndTheResolutionThatFitIt) {
   EXPECT_EQ(plan.scenes[0].source->pixels(), 1);
   EXPECT_EQ(plan.scenes[1].source->width(), 12);
   EXPECT_THAT(plan.skips, Contains("quarterdisk: has mean to draw with; left out: surface, balance@light+cosine"));
-  EXPECT_THAT(plan.skips, Contains("veach-mis: has light, bsdf, hemisphere, cosine, surface to draw with; left out: "
-                                   "mean"));
+  EXPECT_THAT(
+      plan.skips,
+      Contains("veach-mis: has light, bsdf, hemisphere, cosine, surface, light-power, light-bvh, light-solid-angle, "
+               "light-power-solid-angle, light-bvh-solid-angle to draw with; left out: "
+               "mean"));
   // What no scene takes is a mistake.
   try {
     plan_of({{"scene", "quarterdisk,veach-mis"},
