@@ -7,13 +7,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <numbers>
 
 #include "core/error.h"
 #include "scenes/mesh_reader.h"
 #include "scenes/mesh_readers.h"
 #include "scenes/shape_hits.h"
+#include "tests/scenes/scene_folder.h"
 
 namespace halfslope {
 namespace {
@@ -171,13 +171,7 @@ TEST(VertexNormals, ThatCancelAreThoseOfATriangle) {
 
 class MeshFile : public testing::Test {
  protected:
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    const auto path = folder_ / name;
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-  }
-  void SetUp() override { std::filesystem::create_directories(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path write(const std::string& name, const std::string& text) { return folder_.write(name, text); }
   std::string failure(const std::filesystem::path& path) {
     try {
       load_mesh(path);
@@ -187,7 +181,7 @@ class MeshFile : public testing::Test {
     }
     return "no error";
   }
-  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "halfslope-mesh-test";
+  const SceneFolder folder_;
 };
 
 TEST_F(MeshFile, DegenerateTrianglesAreCountedAndLeftOut) {
@@ -208,7 +202,7 @@ TEST_F(MeshFile, NormalsAreMadeUnitLengthAndAbsentOnesComputed) {
 
 TEST_F(MeshFile, WithoutAMeshIsAnError) {
   EXPECT_THAT(failure(folder_ / "none.ply"), HasSubstr("none.ply"));
-  EXPECT_THAT(failure(folder_), HasSubstr("an unknown kind of mesh"));
+  EXPECT_THAT(failure(folder_ / ""), HasSubstr("an unknown kind of mesh"));
   std::filesystem::create_directories(folder_ / "folder.ply");
   EXPECT_THAT(failure(folder_ / "folder.ply"), HasSubstr("folder.ply"));
   EXPECT_THAT(failure(write("a.stl", "solid")), HasSubstr("an unknown kind of mesh '.stl', allowed: .ply, .obj"));
