@@ -12,12 +12,6 @@
 namespace halfslope {
 namespace {
 
-Scene with_lights(Scene scene) {
-  if (!list_lights(scene).empty()) return scene;
-  fail(ExitCode::kBadInput,
-       "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
-}
-
 struct NamedTechnique {
   const char* name;
   TransportTechnique meaning;
@@ -62,8 +56,8 @@ DirectLighting::DirectLighting(Scene scene, int width, int height)
       width_(width),
       height_(height),
       channels_(is_grey(scene_) ? 1 : 3),
-      tracing_(tracing_of(scene_)),
       intersector_(scene_),
+      tracing_(tracing_of(scene_, intersector_)),
       transport_(scene_, tracing_, false) {
   const bool lobes = chooses_lobes(scene_);
   const std::size_t lights = plain_ ? emitters_.lights.size() : transport_.chosen();

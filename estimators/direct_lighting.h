@@ -58,8 +58,8 @@ class DirectLighting final : public IntegralSource {
   bool plain_;
   Emitters emitters_;  ///< of a plain scene
   int width_, height_, channels_;
-  Tracing tracing_;
   Intersector intersector_;
+  Tracing tracing_;
   LazyTransport transport_;
   std::vector<Technique> techniques_;
   std::vector<TransportTechnique> meanings_;  ///< of techniques_

@@ -118,7 +118,7 @@ void add_emission(const PathCall<scalar_t<F>>& call, int lane, const Surface<F>&
 template <class F, int C>
 void add_vertex(const PathCall<scalar_t<F>>& call, const RowNumbers<scalar_t<F>>& numbers, int dims, int vertex,
                 int lane, const Surface<F>& surface, PathRow<scalar_t<F>, C>& row, LightRow<scalar_t<F>, C>& light,
-                const scalar_t<F> (&u)[7][kLanes]) {
+                const scalar_t<F> (&u)[6][kLanes]) {
   using T = scalar_t<F>;
   const TransportScene<T>& scene = *call.scene;
   const F zero(T(0));
@@ -194,7 +194,7 @@ void trace_row(const PathCall<scalar_t<F>>& call, std::size_t first) {
     first_hits<F>(scene, row.rays);
     const bool scatters = vertex + 1 < call.max_depth;
     const int dims = call.dims.first_vertex + vertex * call.dims.per_vertex;
-    alignas(64) T u[7][kLanes];
+    alignas(64) T u[6][kLanes];
     if (scatters) {
       numbers.load(dims + call.dims.light, u[0]), numbers.load(dims + call.dims.light + 1, u[1]);
       if (call.dims.lobe >= 0)

@@ -72,24 +72,16 @@ class PixelPaths final : public Integral {
   mutable std::vector<const std::uint32_t*> high_, low_;
 };
 
-Scene with_light(Scene scene) {
-  const bool emits = std::any_of(scene.primitives.begin(), scene.primitives.end(),
-                                 [](const Primitive& p) { return p.emits && (p.radiance > 0).any(); });
-  if (emits || scene.environment || !scene.delta_lights.empty()) return scene;
-  fail(ExitCode::kBadInput,
-       "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
-}
-
 }  // namespace
 
 PathTransport::PathTransport(Scene scene, int width, int height, const PathOptions& options)
-    : scene_(with_light(std::move(scene))),
+    : scene_(with_lights(std::move(scene))),
       width_(width),
       height_(height),
       channels_(is_grey(scene_) ? 1 : 3),
       options_(options),
-      tracing_(tracing_of(scene_)),
       intersector_(scene_),
+      tracing_(tracing_of(scene_, intersector_)),
       filter_(inverse_filter(scene_.sensor)),
       chooses_(chooses_lobes(scene_)),
       transport_(scene_, tracing_, true) {
@@ -104,28 +96,28 @@ PathTransport::PathTransport(Scene scene, int width, int height, const PathOptio
   }
   shape_.vertices = options_.max_depth - 1;
   if (options_.rr_depth > 0) shape_.each.groups.push_back(1);
+
+  // Where the numbers of a path stand: as shape_ and the techniques' layouts have them.
+  std::int32_t next = 0;
+  const auto take = [&](std::int32_t count) { return std::exchange(next, next + count); };
+  if (!filter_.empty()) dims_.film = take(2);
+  if (scene_.sensor.kind == Sensor::Kind::kThinLens && scene_.sensor.aperture_radius > 0) dims_.lens = take(2);
+  dims_.first_vertex = next;
+  next = 0;
+  if (transport_.chosen() > 1) dims_.choice = take(1);
+  dims_.light = take(2);
+  if (chooses_) dims_.lobe = take(1);
+  dims_.bsdf = take(2);
+  if (options_.rr_depth > 0) dims_.roulette = take(1);
+  dims_.per_vertex = next;
 }
 
 std::vector<int> PathTransport::reference_techniques() const { return {0, static_cast<int>(techniques_.size()) - 1}; }
 
 PixelIntegral PathTransport::pixel(int index) const {
-  // Where the numbers of a path stand: as shape_ and the techniques' layouts have them.
-  PathDims dims;
-  std::int32_t next = 0;
-  const auto take = [&](std::int32_t count) { return std::exchange(next, next + count); };
-  if (!filter_.empty()) dims.film = take(2);
-  if (scene_.sensor.kind == Sensor::Kind::kThinLens && scene_.sensor.aperture_radius > 0) dims.lens = take(2);
-  dims.first_vertex = next;
-  next = 0;
-  if (transport_.chosen() > 1) dims.choice = take(1);
-  dims.light = take(2);
-  if (chooses_) dims.lobe = take(1);
-  dims.bsdf = take(2);
-  if (options_.rr_depth > 0) dims.roulette = take(1);
-  dims.per_vertex = next;
   PixelIntegral result;
   const Camera camera = camera_of(scene_.sensor, tracing_, index % width_, index / width_, width_, height_);
-  result.integral = std::make_unique<PixelPaths>(transport_, camera, filter_, options_, channels_, dims);
+  result.integral = std::make_unique<PixelPaths>(transport_, camera, filter_, options_, channels_, dims_);
   return result;
 }
 

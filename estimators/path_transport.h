@@ -47,10 +47,11 @@ class PathTransport final : public IntegralSource {
   Scene scene_;
   int width_, height_, channels_;
   PathOptions options_;
-  Tracing tracing_;
   Intersector intersector_;
+  Tracing tracing_;
   std::vector<Technique> techniques_;
   PathShape shape_;
+  PathDims dims_;              ///< of shape_ and the techniques' layouts
   std::vector<float> filter_;  ///< inverse distribution function of the reconstruction filter; empty: none
   bool chooses_;               ///< whether BSDFs draw a number to choose between lobes
   LazyTransport transport_;

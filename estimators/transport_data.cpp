@@ -105,12 +105,6 @@ void TransportData<T>::add_materials(const Scene& scene) {
   scene_.textures = textures_.empty() ? nullptr : textures_.data();
 }
 
-template <class T>
-std::int32_t TransportData<T>::material(int primitive, bool front) const {
-  const SurfaceData& surface = surfaces_[static_cast<std::size_t>(primitive)];
-  return front ? surface.front : surface.back;
-}
-
 template class TransportData<float>;
 template class TransportData<double>;
 

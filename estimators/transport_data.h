@@ -23,7 +23,7 @@ struct Tracing {
 
   Vec3 to_kernel(const Vec3& p) const { return unit * (p - middle); }
 };
-Tracing tracing_of(const Scene& scene);
+Tracing tracing_of(const Scene& scene, const Intersector& intersector);
 
 /// A light of one piece, or none, as chosen from.
 struct LightSource {
@@ -39,6 +39,9 @@ struct LightSource {
 /// The lights of a scene that emit anything: those of surfaces in their order, delta lights, the environment. First all
 /// that are somewhere, then those infinitely far away.
 std::vector<LightSource> list_lights(const Scene& scene);
+
+/// The scene itself. Throws Error(kBadInput) where it has none.
+Scene with_lights(Scene scene);
 
 /// Whether only a connection finds such a light.
 bool is_delta(LightKind kind);
@@ -57,11 +60,10 @@ class TransportData {
   TransportData& operator=(const TransportData&) = delete;
 
   const TransportScene<T>& scene() const { return scene_; }
-  /// The piece of a primitive's triangle (0 of a shape that is no mesh), and the material of its front or back.
-  std::int32_t piece(int primitive, int triangle) const;
-  std::int32_t material(int primitive, bool front) const;
 
  private:
+  /// Of a primitive's triangle; 0 of a shape that is no mesh.
+  std::int32_t piece(int primitive, int triangle) const;
   void add_pieces(const Scene& scene, const Tracing& tracing);
   void add_materials(const Scene& scene);
   void add_lights(const Scene& scene, const Tracing& tracing, const std::vector<LightSource>& lights,

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/error.h"
 #include "estimators/transport_data.h"
 
 namespace halfslope {
@@ -190,6 +191,12 @@ std::vector<LightSource> list_lights(const Scene& scene) {
   }
   lights.insert(lights.end(), beyond.begin(), beyond.end());
   return lights;
+}
+
+Scene with_lights(Scene scene) {
+  if (!list_lights(scene).empty()) return scene;
+  fail(ExitCode::kBadInput,
+       "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
 }
 
 bool is_delta(LightKind kind) {

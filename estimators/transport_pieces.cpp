@@ -111,12 +111,10 @@ bool needs_attributes(const Scene& scene) {
 
 }  // namespace
 
-Tracing tracing_of(const Scene& scene) {
+Tracing tracing_of(const Scene& scene, const Intersector& intersector) {
   Tracing tracing;
-  if (count_pieces(scene) > kHandful) {
-    tracing.embree = std::make_shared<const EmbreeScene>(scene);
-    return tracing;
-  }
+  tracing.embree = intersector.embree();
+  if (tracing.embree) return tracing;
   Eigen::AlignedBox3d box;
   for (const Primitive& primitive : scene.primitives) {
     const Vec3 center = middle(primitive), reach = Vec3::Constant(extent(primitive));

@@ -90,12 +90,12 @@ enum class LightKind : std::uint8_t {
 template <class T>
 struct LightElement {
   LightKind kind;
-  std::int32_t piece;                      ///< −1: no surface
-  T radiance[3];                           ///< intensity of point and spot lights, irradiance of directional ones
-  T pdf_area;                              ///< 1 / area of the piece
-  T position[3];                           ///< of point and spot lights
-  T axis[3];                               ///< of spot and directional lights: the way that light travels
-  T cos_cutoff, beam_width, inverse_fade;  ///< of a spot light; 1/(cutoff − beam width), 0 where they are equal
+  std::int32_t piece;          ///< −1: no surface
+  T radiance[3];               ///< intensity of point and spot lights, irradiance of directional ones
+  T pdf_area;                  ///< 1 / area of the piece
+  T position[3];               ///< of point and spot lights
+  T axis[3];                   ///< of spot and directional lights: the way that light travels
+  T beam_width, inverse_fade;  ///< of a spot light; 1/(cutoff − beam width), 0 where they are equal
   T cutoff;
 };
 

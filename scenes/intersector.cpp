@@ -127,7 +127,7 @@ std::string why_traced(std::size_t pieces) {
 }
 
 Intersector::Intersector(const Scene& scene) : scene_(scene), pieces_(count_pieces(scene)) {
-  if (pieces_ > kHandful) embree_ = std::make_unique<EmbreeScene>(scene);
+  if (pieces_ > kHandful) embree_ = std::make_shared<const EmbreeScene>(scene);
 }
 
 SurfaceHit Intersector::first(const Ray& ray) const {

@@ -47,12 +47,14 @@ class Intersector {
   SurfaceHit first(const Ray& ray) const;
 
   bool uses_embree() const { return embree_ != nullptr; }
+  /// The hierarchy that is asked, for others to ask as well; null where each piece is tried.
+  const std::shared_ptr<const EmbreeScene>& embree() const { return embree_; }
   std::string why() const { return why_traced(pieces_); }
 
  private:
   const Scene& scene_;
   std::size_t pieces_;
-  std::unique_ptr<EmbreeScene> embree_;
+  std::shared_ptr<const EmbreeScene> embree_;
 };
 
 }  // namespace halfslope
