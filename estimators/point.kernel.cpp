@@ -121,7 +121,7 @@ void connect_row(const PointCall<scalar_t<F>>& call, const Surface<F>& surface, 
     for (int l = 0; l < kWidth<F>; ++l) {
       to[lane + l] = drawn.piece[l];
       rays.from[lane + l] = call.start->piece;
-      at.element[l] = drawn.piece[l] >= 0 ? scene.piece_light[drawn.piece[l]] : scene.environment_light;
+      at.element[l] = drawn.piece[l] >= 0 ? scene.sides[drawn.piece[l]].light : scene.environment_light;
     }
   }
   if (any_of(rays.active)) block<F>(scene, rays, to, limits);

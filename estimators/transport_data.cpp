@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 
+#include "scenes/bsdf_kind.h"
+
 namespace halfslope {
 namespace {
 
@@ -49,14 +51,14 @@ template <class T>
 TransportData<T>::TransportData(const Scene& scene, const Tracing& tracing, const std::vector<LightSource>& lights,
                                 std::size_t chosen)
     : embree_(tracing.embree) {
-  add_pieces(scene, tracing);
-  add_materials(scene);
+  add_pieces(scene, tracing, add_materials(scene));
   add_lights(scene, tracing, lights, chosen);
 }
 
 // A material for each side of each primitive that scatters at all.
 template <class T>
-void TransportData<T>::add_materials(const Scene& scene) {
+std::vector<PieceSides> TransportData<T>::add_materials(const Scene& scene) {
+  std::vector<PieceSides> sides;
   std::map<const Texture*, std::int32_t> known;
   const auto texture_index = [&](const std::shared_ptr<const Texture>& texture) {
     if (!texture) return -1;
@@ -67,6 +69,7 @@ void TransportData<T>::add_materials(const Scene& scene) {
   const auto add = [&](const Bsdf& bsdf) -> std::int32_t {
     if (is_black(bsdf)) return -1;
     materials_.push_back(material_data<T>(bsdf));
+    material_class_.push_back(bsdf_class(materials_.back().kind, materials_.back().distribution));
     opacities_.push_back(static_cast<T>(bsdf.opacity));
     material_textures_.push_back({{texture_index(bsdf.reflectance_texture), texture_index(bsdf.specular_texture),
                                    texture_index(bsdf.transmittance_texture), texture_index(bsdf.opacity_texture)}});
@@ -75,7 +78,7 @@ void TransportData<T>::add_materials(const Scene& scene) {
     return static_cast<std::int32_t>(materials_.size()) - 1;
   };
   for (const Primitive& primitive : scene.primitives) {
-    SurfaceData surface = {add(primitive.bsdf), -1, 0};
+    PieceSides surface = {add(primitive.bsdf), -1, 0, -1};
     if (is_dielectric(primitive.bsdf.kind)) {
       surface.back = surface.front;
       scene_.transmits = true;
@@ -96,13 +99,19 @@ void TransportData<T>::add_materials(const Scene& scene) {
         scene_.two_sided = true;
       }
     }
-    surfaces_.push_back(surface);
+    sides.push_back(surface);
   }
-  scene_.surfaces = surfaces_.data();
   scene_.materials = materials_.data();
+  scene_.material_class = material_class_.data();
+  scene_.only_class = -1;
+  const auto is_first = [&](std::int32_t other) { return other == material_class_.front(); };
+  if (!material_class_.empty() && std::all_of(material_class_.begin(), material_class_.end(), is_first)) {
+    scene_.only_class = material_class_.front();
+  }
   scene_.opacities = opacities_.data();
   scene_.material_textures = textures_.empty() ? nullptr : material_textures_.data();
   scene_.textures = textures_.empty() ? nullptr : textures_.data();
+  return sides;
 }
 
 template class TransportData<float>;

@@ -64,8 +64,9 @@ class TransportData {
  private:
   /// Of a primitive's triangle; 0 of a shape that is no mesh.
   std::int32_t piece(int primitive, int triangle) const;
-  void add_pieces(const Scene& scene, const Tracing& tracing);
-  void add_materials(const Scene& scene);
+  /// The sides of each primitive, made of the materials.
+  std::vector<PieceSides> add_materials(const Scene& scene);
+  void add_pieces(const Scene& scene, const Tracing& tracing, const std::vector<PieceSides>& sides);
   void add_lights(const Scene& scene, const Tracing& tracing, const std::vector<LightSource>& lights,
                   std::size_t chosen);
 
@@ -75,11 +76,12 @@ class TransportData {
   std::vector<FlatTest<T>> tests_;
   std::vector<SpherePiece<T>> spheres_;
   std::vector<CylinderPiece<T>> cylinders_;
-  std::vector<std::int32_t> piece_surface_, piece_light_, first_piece_;
+  std::vector<PieceSides> sides_;
+  std::vector<std::int32_t> first_piece_;
   std::vector<std::vector<std::int32_t>> merged_;  ///< of a mesh whose triangles were joined: the piece of each
   std::vector<TriangleAttributes> attributes_;
-  std::vector<SurfaceData> surfaces_;
   std::vector<MaterialData<T>> materials_;
+  std::vector<std::int32_t> material_class_;
   std::vector<T> opacities_;
   std::vector<MaterialTextures> material_textures_;
   std::vector<TextureData<T>> textures_;

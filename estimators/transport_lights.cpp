@@ -214,7 +214,6 @@ LazyTransport::LazyTransport(const Scene& scene, const Tracing& tracing, bool dr
 template <class T>
 void TransportData<T>::add_lights(const Scene& scene, const Tracing& tracing, const std::vector<LightSource>& lights,
                                   std::size_t chosen) {
-  piece_light_.assign(piece_surface_.size(), -1);
   std::vector<double> uniform, power, surface;
   scene_.environment_light = -1;
   for (std::size_t l = 0; l < lights.size(); ++l) {
@@ -226,7 +225,7 @@ void TransportData<T>::add_lights(const Scene& scene, const Tracing& tracing, co
     if (light.primitive >= 0) {
       element.piece = piece(light.primitive, light.triangle);
       element.pdf_area = static_cast<T>(1 / (light.area * tracing.unit * tracing.unit));
-      piece_light_[static_cast<std::size_t>(element.piece)] = static_cast<std::int32_t>(l);
+      sides_[static_cast<std::size_t>(element.piece)].light = static_cast<std::int32_t>(l);
     } else if (light.kind == LightKind::kEnvironment) {
       scene_.environment_light = static_cast<std::int32_t>(l);
     } else if (light.kind == LightKind::kDirectional) {
@@ -263,7 +262,6 @@ void TransportData<T>::add_lights(const Scene& scene, const Tracing& tracing, co
   scene_.lights = lights_.data();
   scene_.light_count = static_cast<std::int32_t>(chosen);
   scene_.certain_count = static_cast<std::int32_t>(lights_.size() - chosen);
-  scene_.piece_light = piece_light_.data();
   scene_.uniform = {uniform_last_.data(), uniform_probability_.data()};
   scene_.power = {power_last_.data(), power_probability_.data()};
   scene_.surface = {surface_last_.data(), surface_probability_.data()};

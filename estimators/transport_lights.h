@@ -89,7 +89,7 @@ inline F light_probability(const TransportScene<scalar_t<F>>& scene, LightChoice
                            const ReceiverPoint<F>& receiver) {
   using T = scalar_t<F>;
   if (scene.light_count == 1 && choice != LightChoice::kSurface) return F(T(1));
-  if (choice != LightChoice::kBvh) return gather<F>(table_of(scene, choice).probability, 1, element);
+  if (choice != LightChoice::kBvh) return gather<F>(table_of(scene, choice).probability, element);
   alignas(64) T probability[kLanes], p[6][kLanes];
   store(p[0], receiver.position.x), store(p[1], receiver.position.y), store(p[2], receiver.position.z);
   store(p[3], receiver.normal.x), store(p[4], receiver.normal.y), store(p[5], receiver.normal.z);
@@ -114,15 +114,15 @@ struct LightPlace {
 
 template <class F>
 inline LightPlace<F> place_on_flat(const TransportScene<scalar_t<F>>& scene, LightKind kind, bool by_solid_angle,
-                                   const std::int32_t* element, const std::int32_t* piece,
+                                   const LaneEntries<F, LightElement<scalar_t<F>>>& lights, const std::int32_t* piece,
                                    const ReceiverPoint<F>& receiver, const F& u1, const F& u2) {
   using T = scalar_t<F>;
   const F one(T(1));
-  const Vec<F> p0 = gather_vec<F>(scene.flats, &FlatPiece<T>::p0, piece),
-               u = gather_vec<F>(scene.flats, &FlatPiece<T>::u, piece),
-               v = gather_vec<F>(scene.flats, &FlatPiece<T>::v, piece);
+  const LaneEntries<F, FlatPiece<T>> flats(scene.flats, piece);
+  const Vec<F> p0 = gather_vec(flats, &FlatPiece<T>::p0), u = gather_vec(flats, &FlatPiece<T>::u),
+               v = gather_vec(flats, &FlatPiece<T>::v);
   LightPlace<F> place;
-  place.normal = gather_vec<F>(scene.flats, &FlatPiece<T>::normal, piece);
+  place.normal = gather_vec(flats, &FlatPiece<T>::normal);
   if (by_solid_angle && kind == LightKind::kTriangle) {
     const TrianglePoint<F> drawn = sample_triangle_solid_angle(p0 - receiver.position, u, v, u1, u2);
     place.point = p0 + drawn.b1 * u + drawn.b2 * v;
@@ -146,57 +146,56 @@ inline LightPlace<F> place_on_flat(const TransportScene<scalar_t<F>>& scene, Lig
     b = disk.y;
   }
   place.point = p0 + a * u + b * v;
-  place.pdf = gather_field<F>(scene.lights, &LightElement<T>::pdf_area, element);
+  place.pdf = lights(&LightElement<T>::pdf_area);
   return place;
 }
 
 template <class F>
-inline LightPlace<F> place_on_cylinder(const TransportScene<scalar_t<F>>& scene, const std::int32_t* element,
+inline LightPlace<F> place_on_cylinder(const TransportScene<scalar_t<F>>& scene,
+                                       const LaneEntries<F, LightElement<scalar_t<F>>>& lights,
                                        const std::int32_t* cylinder, const F& u1, const F& u2) {
   using T = scalar_t<F>;
-  const Vec<F> axis = gather_vec<F>(scene.cylinders, &CylinderPiece<T>::axis, cylinder);
+  const LaneEntries<F, CylinderPiece<T>> cylinders(scene.cylinders, cylinder);
+  const Vec<F> axis = gather_vec(cylinders, &CylinderPiece<T>::axis);
   const Frame<F> about = frame_about(axis);
   const auto azimuth = sin_cos_2pi(u1);
   const Vec<F> outward = azimuth.cos * about.x + azimuth.sin * about.y;
   LightPlace<F> place;
-  place.point = gather_vec<F>(scene.cylinders, &CylinderPiece<T>::p0, cylinder) +
-                u2 * gather_field<F>(scene.cylinders, &CylinderPiece<T>::length, cylinder) * axis +
-                gather_field<F>(scene.cylinders, &CylinderPiece<T>::radius, cylinder) * outward;
-  place.normal = gather_field<F>(scene.cylinders, &CylinderPiece<T>::side, cylinder) * outward;
-  place.pdf = gather_field<F>(scene.lights, &LightElement<T>::pdf_area, element);
+  place.point = gather_vec(cylinders, &CylinderPiece<T>::p0) + u2 * cylinders(&CylinderPiece<T>::length) * axis +
+                cylinders(&CylinderPiece<T>::radius) * outward;
+  place.normal = cylinders(&CylinderPiece<T>::side) * outward;
+  place.pdf = lights(&LightElement<T>::pdf_area);
   return place;
 }
 
 /// A point on a sphere: of its whole area, or of what the receiver sees of it.
 template <class F>
 inline LightPlace<F> place_on_sphere(const TransportScene<scalar_t<F>>& scene, bool by_solid_angle,
-                                     const std::int32_t* element, const std::int32_t* sphere,
-                                     const ReceiverPoint<F>& receiver, const F& u1, const F& u2) {
+                                     const LaneEntries<F, LightElement<scalar_t<F>>>& lights,
+                                     const std::int32_t* sphere, const ReceiverPoint<F>& receiver, const F& u1,
+                                     const F& u2) {
   using T = scalar_t<F>;
-  const Vec<F> center = gather_vec<F>(scene.spheres, &SpherePiece<T>::center, sphere);
-  const F radius = gather_field<F>(scene.spheres, &SpherePiece<T>::radius, sphere),
-          side = gather_field<F>(scene.spheres, &SpherePiece<T>::side, sphere);
+  const LaneEntries<F, SpherePiece<T>> spheres(scene.spheres, sphere);
+  const Vec<F> center = gather_vec(spheres, &SpherePiece<T>::center);
+  const F radius = spheres(&SpherePiece<T>::radius), side = spheres(&SpherePiece<T>::side);
   if (by_solid_angle) {
     const SpherePoint<F> drawn = sample_sphere_solid_angle(center - receiver.position, radius, u1, u2);
     return {receiver.position + drawn.distance * drawn.direction, side * drawn.outward, drawn.pdf};
   }
   const Vec<F> outward = uniform_sphere(u1, u2);
-  return {center + radius * outward, side * outward,
-          gather_field<F>(scene.lights, &LightElement<T>::pdf_area, element)};
+  return {center + radius * outward, side * outward, lights(&LightElement<T>::pdf_area)};
 }
 
 /// Radiance of delta lights along the way to the receiver, r² divided out.
-template <class F, int C>
-inline void from_spot(const TransportScene<scalar_t<F>>& scene, const std::int32_t* element, const Vec<F>& wi,
-                      F* factor) {
+template <class F>
+inline F from_spot(const LaneEntries<F, LightElement<scalar_t<F>>>& lights, const Vec<F>& wi) {
   using T = scalar_t<F>;
   const F zero(T(0)), one(T(1));
-  const F cosine = -dot(wi, gather_vec<F>(scene.lights, &LightElement<T>::axis, element));
+  const F cosine = -dot(wi, gather_vec(lights, &LightElement<T>::axis));
   const F angle = arccos(min(max(cosine, -one), one));
-  const F cutoff = gather_field<F>(scene.lights, &LightElement<T>::cutoff, element),
-          beam = gather_field<F>(scene.lights, &LightElement<T>::beam_width, element),
-          fade = gather_field<F>(scene.lights, &LightElement<T>::inverse_fade, element);
-  *factor = select(angle <= beam, one, select(angle < cutoff, (cutoff - angle) * fade, zero));
+  const F cutoff = lights(&LightElement<T>::cutoff), beam = lights(&LightElement<T>::beam_width),
+          fade = lights(&LightElement<T>::inverse_fade);
+  return select(angle <= beam, one, select(angle < cutoff, (cutoff - angle) * fade, zero));
 }
 
 /// Nothing drawn.
@@ -247,7 +246,8 @@ inline void draw_on_light(const TransportScene<scalar_t<F>>& scene, const LightW
     present |= 1u << kind[l];
   }
   F radiance[C];
-  for (int c = 0; c < C; ++c) radiance[c] = gather_field<F>(scene.lights, &LightElement<T>::radiance, c, element);
+  const LaneEntries<F, LightElement<T>> lights(scene.lights, element);
+  lights(&LightElement<T>::radiance, radiance);
 
   for (std::uint32_t left = present; left != 0; left &= left - 1) {
     const auto now = static_cast<LightKind>(std::countr_zero(left));
@@ -268,11 +268,11 @@ inline void draw_on_light(const TransportScene<scalar_t<F>>& scene, const LightW
       const bool by_angle = way.by_solid_angle && has_solid_angle(now);
       LightPlace<F> place;
       if (now == LightKind::kSphere) {
-        place = place_on_sphere<F>(scene, by_angle, element, index, receiver, u1, u2);
+        place = place_on_sphere<F>(scene, by_angle, lights, index, receiver, u1, u2);
       } else if (now == LightKind::kCylinder) {
-        place = place_on_cylinder<F>(scene, element, index, u1, u2);
+        place = place_on_cylinder<F>(scene, lights, index, u1, u2);
       } else {
-        place = place_on_flat<F>(scene, now, by_angle, element, index, receiver, u1, u2);
+        place = place_on_flat<F>(scene, now, by_angle, lights, index, receiver, u1, u2);
       }
       const Vec<F> way_there = place.point - receiver.position;
       const F distance2 = dot(way_there, way_there), inverse = one / sqrt(distance2), distance = distance2 * inverse;
@@ -300,20 +300,19 @@ inline void draw_on_light(const TransportScene<scalar_t<F>>& scene, const LightW
       }
     } else {
       sample.delta = sample.delta | lanes;
-      const Vec<F> axis = gather_vec<F>(scene.lights, &LightElement<T>::axis, element);
+      const Vec<F> axis = gather_vec(lights, &LightElement<T>::axis);
       if (now == LightKind::kDirectional) {
         sample.wi = select_vec(lanes, -axis, sample.wi);
         sample.distance = select(lanes, F(std::numeric_limits<T>::max()), sample.distance);
         for (int c = 0; c < C; ++c) sample.weight[c] = select(lanes, radiance[c] / probability, sample.weight[c]);
         continue;
       }
-      const Vec<F> position = gather_vec<F>(scene.lights, &LightElement<T>::position, element);
+      const Vec<F> position = gather_vec(lights, &LightElement<T>::position);
       const Vec<F> way_there = position - receiver.position;
       const F distance2 = dot(way_there, way_there), inverse = one / sqrt(distance2);
       const mask_t<F> apart = lanes & (distance2 > zero);
       const Vec<F> wi = inverse * way_there;
-      F factor = one;
-      if (now == LightKind::kSpot) from_spot<F, C>(scene, element, wi, &factor);
+      const F factor = now == LightKind::kSpot ? from_spot<F>(lights, wi) : one;
       sample.wi = select_vec(apart, wi, sample.wi);
       sample.point = select_vec(lanes, position, sample.point);
       sample.distance = select(lanes, distance2 * inverse, sample.distance);
@@ -339,7 +338,8 @@ inline F light_pdf(const TransportScene<scalar_t<F>>& scene, const LightWay& way
   }
   const F probability = light_probability<F>(scene, way.choice, index, receiver);
   const F distance = length(point - receiver.position);
-  F pdf = pdf_solid_angle_from_area(gather_field<F>(scene.lights, &LightElement<T>::pdf_area, index), distance, cosine);
+  const LaneEntries<F, LightElement<T>> lights(scene.lights, index);
+  F pdf = pdf_solid_angle_from_area(lights(&LightElement<T>::pdf_area), distance, cosine);
   if (present & (1u << static_cast<int>(LightKind::kEnvironment))) {
     const mask_t<F> beyond = lanes_with<F>(kind, static_cast<std::int32_t>(LightKind::kEnvironment));
     pdf = select(beyond, environment_pdf(*scene.environment, wi), pdf);
@@ -357,15 +357,16 @@ inline F light_pdf(const TransportScene<scalar_t<F>>& scene, const LightWay& way
     }
     if (now == LightKind::kSphere) {
       for (int l = 0; l < kWidth<F>; ++l) piece[l] -= scene.flat_count;
-      const Vec<F> center = gather_vec<F>(scene.spheres, &SpherePiece<T>::center, piece);
-      const F radius = gather_field<F>(scene.spheres, &SpherePiece<T>::radius, piece);
+      const LaneEntries<F, SpherePiece<T>> spheres(scene.spheres, piece);
+      const Vec<F> center = gather_vec(spheres, &SpherePiece<T>::center);
+      const F radius = spheres(&SpherePiece<T>::radius);
       mask_t<F> outside;
       pdf = select(lanes, sphere_solid_angle_pdf(center - receiver.position, radius, outside), pdf);
       continue;
     }
-    const Vec<F> corner = gather_vec<F>(scene.flats, &FlatPiece<T>::p0, piece) - receiver.position,
-                 u = gather_vec<F>(scene.flats, &FlatPiece<T>::u, piece),
-                 v = gather_vec<F>(scene.flats, &FlatPiece<T>::v, piece);
+    const LaneEntries<F, FlatPiece<T>> flats(scene.flats, piece);
+    const Vec<F> corner = gather_vec(flats, &FlatPiece<T>::p0) - receiver.position,
+                 u = gather_vec(flats, &FlatPiece<T>::u), v = gather_vec(flats, &FlatPiece<T>::v);
     const F angle =
         now == LightKind::kTriangle ? triangle_solid_angle(corner, u, v) : rectangle_solid_angle(corner, u, v);
     pdf = select(lanes, F(T(1)) / angle, pdf);

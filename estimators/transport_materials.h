@@ -3,6 +3,7 @@
 
 #include <bit>
 
+#include "core/gather.h"
 #include "estimators/transport_surface.h"
 #include "scenes/bsdf_classes.h"
 
@@ -55,47 +56,37 @@ class LaneMaterials {
  public:
   using T = scalar_t<F>;
   LaneMaterials(const TransportScene<T>& scene, const Surface<F>& surface, const std::int32_t* index)
-      : scene_(scene), surface_(surface), index_(index) {
-    for (int l = 1; l < kWidth<F>; ++l) uniform_ &= index[l] == index[0];
-  }
+      : scene_(scene), surface_(surface), index_(index), entries_(scene.materials, index) {}
 
-  F operator()(T MaterialData<T>::*field) const {
-    return uniform_ ? F(scene_.materials[index_[0]].*field) : gather_field<F>(scene_.materials, field, index_);
-  }
-  template <int kCount>
-  F operator()(T (MaterialData<T>::*field)[kCount], int i) const {
-    F value;
-    if (uniform_) {
-      value = F((scene_.materials[index_[0]].*field)[i]);
-    } else {
-      alignas(64) T lanes[kLanes];
-      for (int l = 0; l < kWidth<F>; ++l) lanes[l] = (scene_.materials[index_[l]].*field)[i];
-      value = load<F>(lanes);
+  F operator()(T MaterialData<T>::*field) const { return entries_(field); }
+  template <int kSize, int kCount>
+  void operator()(T (MaterialData<T>::*field)[kSize], F (&out)[kCount]) const {
+    entries_(field, out);
+    if constexpr (kSize == 3) {
+      if (!scene_.material_textures) return;
+      const int slot = field == &MaterialData<T>::reflectance     ? 0
+                       : field == &MaterialData<T>::specular      ? 1
+                       : field == &MaterialData<T>::transmittance ? 2
+                                                                  : -1;
+      if (slot >= 0) look_up_textures(slot, out);
     }
-    if constexpr (kCount == 3) {
-      if (scene_.material_textures) {
-        const int slot = field == &MaterialData<T>::reflectance     ? 0
-                         : field == &MaterialData<T>::specular      ? 1
-                         : field == &MaterialData<T>::transmittance ? 2
-                                                                    : -1;
-        if (slot >= 0) return textured(slot, i, value);
-      }
-    }
-    return value;
   }
   /// The share of light that meets the material at all.
   F opacity() const {
-    const F plain = gather<F>(scene_.opacities, 1, index_);
-    return scene_.material_textures ? textured(3, 0, plain) : plain;
+    F opacity[1] = {gather<F>(scene_.opacities, index_)};
+    if (scene_.material_textures) look_up_textures(3, opacity);
+    return opacity[0];
   }
 
  private:
-  F textured(int slot, int channel, const F& plain) const {
-    alignas(64) T lanes[kLanes], u[kLanes], v[kLanes];
-    store(lanes, plain);
+  /// Replaces the values of lanes whose material has a texture there.
+  template <int kCount>
+  void look_up_textures(int slot, F (&values)[kCount]) const {
     bool any = false;
     for (int l = 0; l < kWidth<F>; ++l) any |= scene_.material_textures[index_[l]].texture[slot] >= 0;
-    if (!any) return plain;
+    if (!any) return;
+    alignas(64) T lanes[kCount][kLanes], u[kLanes], v[kLanes];
+    for (int c = 0; c < kCount; ++c) store(lanes[c], values[c]);
     store(u, surface_.u);
     store(v, surface_.v);
     for (int l = 0; l < kWidth<F>; ++l) {
@@ -103,36 +94,43 @@ class LaneMaterials {
       if (texture < 0) continue;
       T rgb[3];
       look_up(scene_.textures[texture], u[l], v[l], rgb);
-      lanes[l] = rgb[channel];
+      for (int c = 0; c < kCount; ++c) lanes[c][l] = rgb[c];
     }
-    return load<F>(lanes);
+    for (int c = 0; c < kCount; ++c) values[c] = load<F>(lanes[c]);
   }
 
   const TransportScene<T>& scene_;
   const Surface<F>& surface_;
   const std::int32_t* index_;
-  bool uniform_ = true;
+  LaneEntries<F, MaterialData<T>> entries_;
 };
-
-/// A number for each class of scenes/bsdf_classes.h: materials of one have one.
-template <class T>
-inline std::int32_t class_of(const MaterialData<T>& material) {
-  return 2 * static_cast<std::int32_t>(material.kind) + static_cast<std::int32_t>(material.distribution);
-}
 
 /// Runs `run(lanes, bsdf, materials)` for each class of BSDF that some lane of `active` has.
 template <class F, int C, class Run>
 inline void with_bsdfs(const TransportScene<scalar_t<F>>& scene, const Surface<F>& surface, const mask_t<F>& active,
                        Run run) {
+  const mask_t<F> scatters = active & lanes_from<F>(surface.material, 0);
+  if (!any_lane(scatters)) return;
+  alignas(64) std::int32_t index[kLanes];
+  for (int l = 0; l < kWidth<F>; ++l) index[l] = surface.material[l] < 0 ? 0 : surface.material[l];
+  const auto with_class = [&](std::int32_t now, const mask_t<F>& lanes) {
+    const LaneMaterials<F> materials(scene, surface, index);
+    with_bsdf_class<F, C>(kind_of_class(now), distribution_of_class(now),
+                          [&](auto type) { run(lanes, typename decltype(type)::type(materials), materials); });
+  };
+  if (scene.only_class >= 0) {
+    with_class(scene.only_class, scatters);
+    return;
+  }
   using T = scalar_t<F>;
-  alignas(64) T active_lanes[kLanes];
-  store_mask<F>(active_lanes, active);
-  alignas(64) std::int32_t lane_class[kLanes], index[kLanes];
+  alignas(64) T flags[kLanes];
+  store_mask<F>(flags, scatters);
+  alignas(64) std::int32_t lane_class[kLanes];
   std::uint32_t present = 0;
   for (int l = 0; l < kWidth<F>; ++l) {
-    const bool here = active_lanes[l] != T(0) && surface.material[l] >= 0;
-    lane_class[l] = here ? class_of(scene.materials[surface.material[l]]) : -1;
-    if (here) present |= 1u << lane_class[l];
+    const std::int32_t of_lane = scene.material_class[index[l]];
+    lane_class[l] = flags[l] != T(0) ? of_lane : -1;
+    present |= flags[l] != T(0) ? 1u << of_lane : 0u;
   }
   while (present != 0) {
     const int now = std::countr_zero(present);
@@ -143,10 +141,7 @@ inline void with_bsdfs(const TransportScene<scalar_t<F>>& scene, const Surface<F
       if (lane_class[l] == now) some = surface.material[l];
     }
     for (int l = 0; l < kWidth<F>; ++l) index[l] = lane_class[l] == now ? surface.material[l] : some;
-    const mask_t<F> lanes = lanes_with<F>(lane_class, now);
-    const LaneMaterials<F> materials(scene, surface, index);
-    with_bsdf_class<F, C>(static_cast<BsdfKind>(now / 2), static_cast<Distribution>(now % 2),
-                          [&](auto type) { run(lanes, typename decltype(type)::type(materials), materials); });
+    with_class(now, lanes_with<F>(lane_class, now));
   }
 }
 

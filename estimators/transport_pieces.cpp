@@ -128,7 +128,7 @@ Tracing tracing_of(const Scene& scene, const Intersector& intersector) {
 }
 
 template <class T>
-void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing) {
+void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing, const std::vector<PieceSides>& sides) {
   std::vector<PlainFlat> plain;
   const bool attributed = needs_attributes(scene);
   const auto add_flat = [&](const PlainFlat& flat, const Vec3& tangent, const TriangleAttributes& attributes,
@@ -136,7 +136,7 @@ void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing) {
     plain.push_back(flat);
     flats_.push_back(rounded<T>(flat, tangent));
     if (attributed) attributes_.push_back(attributes);
-    piece_surface_.push_back(static_cast<std::int32_t>(surface));
+    sides_.push_back(sides[surface]);
   };
   const TriangleAttributes none = {{}, {{0, 0}, {1, 0}, {0, 1}}};
   merged_.resize(scene.primitives.size());
@@ -176,7 +176,7 @@ void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing) {
     copy(Vec3(sphere->from_world.row(2)), piece.z);
     first_piece_[p] = static_cast<std::int32_t>(flats_.size() + spheres_.size());
     spheres_.push_back(piece);
-    piece_surface_.push_back(static_cast<std::int32_t>(p));
+    sides_.push_back(sides[p]);
   }
   for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
     const auto* cylinder = std::get_if<Cylinder>(&scene.primitives[p].shape);
@@ -191,14 +191,14 @@ void TransportData<T>::add_pieces(const Scene& scene, const Tracing& tracing) {
     copy(across.norm() > 0 ? Vec3(across.normalized()) : axis.unitOrthogonal(), piece.start);
     first_piece_[p] = static_cast<std::int32_t>(flats_.size() + spheres_.size() + cylinders_.size());
     cylinders_.push_back(piece);
-    piece_surface_.push_back(static_cast<std::int32_t>(p));
+    sides_.push_back(sides[p]);
   }
 
   scene_.flats = flats_.data(), scene_.spheres = spheres_.data(), scene_.cylinders = cylinders_.data();
   scene_.flat_count = static_cast<std::int32_t>(flats_.size());
   scene_.sphere_count = static_cast<std::int32_t>(spheres_.size());
   scene_.cylinder_count = static_cast<std::int32_t>(cylinders_.size());
-  scene_.piece_surface = piece_surface_.data();
+  scene_.sides = sides_.data();
   scene_.first_piece = first_piece_.data();
   scene_.attributes = attributed ? attributes_.data() : nullptr;
   scene_.framed_flats = std::any_of(plain.begin(), plain.end(),
@@ -235,8 +235,8 @@ std::int32_t TransportData<T>::piece(int primitive, int triangle) const {
   return first_piece_[p] + triangle;
 }
 
-template void TransportData<float>::add_pieces(const Scene&, const Tracing&);
-template void TransportData<double>::add_pieces(const Scene&, const Tracing&);
+template void TransportData<float>::add_pieces(const Scene&, const Tracing&, const std::vector<PieceSides>&);
+template void TransportData<double>::add_pieces(const Scene&, const Tracing&, const std::vector<PieceSides>&);
 template std::int32_t TransportData<float>::piece(int, int) const;
 template std::int32_t TransportData<double>::piece(int, int) const;
 

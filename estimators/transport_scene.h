@@ -63,10 +63,12 @@ struct TextureData {
   const float* rgb;
 };
 
-/// What a primitive is made of: indices of materials, −1 where a side only absorbs; and of textures, −1 without.
-struct SurfaceData {
+/// What a piece is made of: indices of materials, −1 where a side only absorbs; and the light element that its front
+/// is, −1 where it does not emit.
+struct PieceSides {
   std::int32_t front, back;
-  std::int32_t two_sided;  ///< the back is seen as a front of its own; else front and back are one dielectric
+  std::int32_t two_sided;  ///< 1: the back is seen as a front of its own; 0: front and back are one dielectric
+  std::int32_t light;
 };
 
 inline constexpr int kTextured = 4;  ///< reflectance, specular, transmittance, opacity
@@ -123,12 +125,12 @@ struct TransportScene {
   const SpherePiece<T>* spheres;
   const CylinderPiece<T>* cylinders;
   std::int32_t flat_count, sphere_count, cylinder_count;
-  const std::int32_t* piece_surface;     ///< which surface each piece is of
-  const std::int32_t* piece_light;       ///< the light element that it is, or −1
+  const PieceSides* sides;               ///< one a piece
   const TriangleAttributes* attributes;  ///< one a flat piece; null where no mesh has any
-  const SurfaceData* surfaces;
   const MaterialData<T>* materials;
-  const T* opacities;                         ///< one a material
+  const std::int32_t* material_class;  ///< one a material: those of one BSDF class (scenes/bsdf_classes.h) have one
+  std::int32_t only_class;             ///< of all materials; −1 where there are several
+  const T* opacities;                  ///< one a material
   const MaterialTextures* material_textures;  ///< null where nothing is textured
   const TextureData<T>* textures;
   bool masked;       ///< some material's opacity is not 1

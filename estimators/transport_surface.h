@@ -3,34 +3,17 @@
 
 #include <numbers>
 
+#include "core/gather.h"
 #include "estimators/transport_rays.h"
 
 namespace halfslope::kernel {
 
-/// A number of each lane's own entry: base[index · stride].
-template <class F>
-inline F gather(const scalar_t<F>* base, std::size_t stride, const std::int32_t* index) {
-  alignas(64) scalar_t<F> lanes[kLanes];
-  for (int l = 0; l < kWidth<F>; ++l) lanes[l] = base[static_cast<std::size_t>(index[l]) * stride];
-  return load<F>(lanes);
-}
-/// A field of each lane's own struct.
-template <class F, class Struct>
-inline F gather_field(const Struct* structs, scalar_t<F> Struct::*field, const std::int32_t* index) {
-  alignas(64) scalar_t<F> lanes[kLanes];
-  for (int l = 0; l < kWidth<F>; ++l) lanes[l] = structs[index[l]].*field;
-  return load<F>(lanes);
-}
-template <class F, class Struct>
-inline F gather_field(const Struct* structs, scalar_t<F> (Struct::*field)[3], int channel, const std::int32_t* index) {
-  alignas(64) scalar_t<F> lanes[kLanes];
-  for (int l = 0; l < kWidth<F>; ++l) lanes[l] = (structs[index[l]].*field)[channel];
-  return load<F>(lanes);
-}
-template <class F, class Struct>
-inline Vec<F> gather_vec(const Struct* structs, scalar_t<F> (Struct::*field)[3], const std::int32_t* index) {
-  return {gather_field<F>(structs, field, 0, index), gather_field<F>(structs, field, 1, index),
-          gather_field<F>(structs, field, 2, index)};
+/// A vector of each lane's own entry.
+template <class F, class Entry>
+inline Vec<F> gather_vec(const LaneEntries<F, Entry>& entries, scalar_t<F> (Entry::*field)[3]) {
+  F xyz[3];
+  entries(field, xyz);
+  return {xyz[0], xyz[1], xyz[2]};
 }
 
 /// Lanes whose integer is `value`.
@@ -108,6 +91,7 @@ struct Surface {
   F u, v;          ///< texture coordinates; only where something is textured
   F facing;        ///< cosine between `normal` and the way back: positive on the front
   alignas(64) std::int32_t material[kLanes];  ///< −1 where nothing is scattered
+  alignas(64) std::int32_t light[kLanes];     ///< the light element whose front is seen, or −1
 };
 
 /// The part of a Surface that the kinds of pieces give in their own ways.
@@ -122,11 +106,11 @@ inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, cons
                                   const std::int32_t* piece) {
   using T = scalar_t<F>;
   F a = load<F>(row.a + lane), b = load<F>(row.b + lane);
-  const Vec<F> p0 = gather_vec<F>(scene.flats, &FlatPiece<T>::p0, piece);
-  const Vec<F> u = gather_vec<F>(scene.flats, &FlatPiece<T>::u, piece),
-               v = gather_vec<F>(scene.flats, &FlatPiece<T>::v, piece);
+  const LaneEntries<F, FlatPiece<T>> flats(scene.flats, piece);
+  const Vec<F> p0 = gather_vec(flats, &FlatPiece<T>::p0), u = gather_vec(flats, &FlatPiece<T>::u),
+               v = gather_vec(flats, &FlatPiece<T>::v);
   SurfacePoint<F> point;
-  point.normal = gather_vec<F>(scene.flats, &FlatPiece<T>::normal, piece);
+  point.normal = gather_vec(flats, &FlatPiece<T>::normal);
   if (scene.embree && (scene.framed_flats || sizeof(T) == 8)) {
     // Embree knows a and b of triangles, with binary32's digits; the plane has all.
     const Vec<F> origin = row.origin.template load<F>(lane), direction = row.direction.template load<F>(lane);
@@ -134,14 +118,14 @@ inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, cons
     const Vec<F> from_corner = origin + distance * direction - p0;
     const F uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), along_u = dot(from_corner, u),
             along_v = dot(from_corner, v), inverse = F(T(1)) / (uu * vv - uv * uv);
-    const F outline = gather_field<F>(scene.flats, &FlatPiece<T>::outline, piece);
+    const F outline = flats(&FlatPiece<T>::outline);
     const mask_t<F> framed = outline != F(sizeof(T) == 8 ? T(-1) : static_cast<T>(LightKind::kTriangle));
     a = select(framed, (vv * along_u - uv * along_v) * inverse, a);
     b = select(framed, (uu * along_v - uv * along_u) * inverse, b);
   }
   point.position = p0 + a * u + b * v;
   point.shading = point.normal;
-  if (scene.anisotropic) point.tangent = gather_vec<F>(scene.flats, &FlatPiece<T>::tangent, piece);
+  if (scene.anisotropic) point.tangent = gather_vec(flats, &FlatPiece<T>::tangent);
   point.u = a;
   point.v = b;
   if (!scene.attributes) return point;
@@ -164,8 +148,7 @@ inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, cons
   point.u = blend(uvs, 0);
   point.v = blend(uvs, 1);
   if (scene.textures) {
-    const auto disk =
-        gather_field<F>(scene.flats, &FlatPiece<T>::outline, piece) == F(static_cast<T>(LightKind::kDisk));
+    const auto disk = flats(&FlatPiece<T>::outline) == F(static_cast<T>(LightKind::kDisk));
     point.u = select(disk, sqrt(fma(a, a, b * b)), point.u);
     point.v = select(disk, turns(b, a), point.v);
   }
@@ -176,18 +159,18 @@ template <class F>
 inline SurfacePoint<F> sphere_point(const TransportScene<scalar_t<F>>& scene, const Vec<F>& reached,
                                     const std::int32_t* sphere) {
   using T = scalar_t<F>;
-  const Vec<F> center = gather_vec<F>(scene.spheres, &SpherePiece<T>::center, sphere);
+  const LaneEntries<F, SpherePiece<T>> spheres(scene.spheres, sphere);
+  const Vec<F> center = gather_vec(spheres, &SpherePiece<T>::center);
   const Vec<F> outward = normalise(reached - center);
   SurfacePoint<F> point;
-  point.position = center + gather_field<F>(scene.spheres, &SpherePiece<T>::radius, sphere) * outward;
-  point.normal = gather_field<F>(scene.spheres, &SpherePiece<T>::side, sphere) * outward;
+  point.position = center + spheres(&SpherePiece<T>::radius) * outward;
+  point.normal = spheres(&SpherePiece<T>::side) * outward;
   point.shading = point.normal;
   point.tangent = outward;
   point.u = point.v = F(T(0));
   if (!scene.textures && !scene.anisotropic) return point;
-  const Vec<F> x = gather_vec<F>(scene.spheres, &SpherePiece<T>::x, sphere),
-               y = gather_vec<F>(scene.spheres, &SpherePiece<T>::y, sphere),
-               z = gather_vec<F>(scene.spheres, &SpherePiece<T>::z, sphere);
+  const Vec<F> x = gather_vec(spheres, &SpherePiece<T>::x), y = gather_vec(spheres, &SpherePiece<T>::y),
+               z = gather_vec(spheres, &SpherePiece<T>::z);
   const Vec<F> own = {dot(x, outward), dot(y, outward), dot(z, outward)};
   point.tangent = cross(z, outward);
   spherical_uv(own, point.u, point.v);
@@ -198,20 +181,21 @@ template <class F>
 inline SurfacePoint<F> cylinder_point(const TransportScene<scalar_t<F>>& scene, const Vec<F>& reached,
                                       const std::int32_t* cylinder) {
   using T = scalar_t<F>;
-  const Vec<F> p0 = gather_vec<F>(scene.cylinders, &CylinderPiece<T>::p0, cylinder);
-  const Vec<F> axis = gather_vec<F>(scene.cylinders, &CylinderPiece<T>::axis, cylinder);
+  const LaneEntries<F, CylinderPiece<T>> cylinders(scene.cylinders, cylinder);
+  const Vec<F> p0 = gather_vec(cylinders, &CylinderPiece<T>::p0);
+  const Vec<F> axis = gather_vec(cylinders, &CylinderPiece<T>::axis);
   const F height = dot(reached - p0, axis);
   const Vec<F> foot = p0 + height * axis;
   const Vec<F> outward = normalise(reached - foot);
   SurfacePoint<F> point;
-  point.position = foot + gather_field<F>(scene.cylinders, &CylinderPiece<T>::radius, cylinder) * outward;
-  point.normal = gather_field<F>(scene.cylinders, &CylinderPiece<T>::side, cylinder) * outward;
+  point.position = foot + cylinders(&CylinderPiece<T>::radius) * outward;
+  point.normal = cylinders(&CylinderPiece<T>::side) * outward;
   point.shading = point.normal;
   point.tangent = cross(axis, outward);
   point.u = F(T(0));
-  point.v = height / gather_field<F>(scene.cylinders, &CylinderPiece<T>::length, cylinder);
+  point.v = height / cylinders(&CylinderPiece<T>::length);
   if (scene.textures) {
-    const Vec<F> start = gather_vec<F>(scene.cylinders, &CylinderPiece<T>::start, cylinder);
+    const Vec<F> start = gather_vec(cylinders, &CylinderPiece<T>::start);
     point.u = turns(dot(cross(axis, start), outward), dot(start, outward));
   }
   return point;
@@ -236,30 +220,30 @@ inline void surface_at(const TransportScene<scalar_t<F>>& scene, const RayRow<sc
   const Vec<F> direction = row.direction.template load<F>(lane);
   const std::int32_t* piece = row.piece + lane;
   const std::int32_t spheres = scene.flat_count, cylinders = scene.flat_count + scene.sphere_count;
-  bool any_flat = false, any_sphere = false, any_cylinder = false;
+  std::int32_t some_flat = 0, some_sphere = 0, some_cylinder = 0;
   alignas(64) std::int32_t index[kLanes];
   for (int l = 0; l < kWidth<F>; ++l) {
-    any_flat |= piece[l] >= 0 && piece[l] < spheres;
-    any_sphere |= piece[l] >= spheres && piece[l] < cylinders;
-    any_cylinder |= piece[l] >= cylinders;
+    some_flat |= (piece[l] >= 0) & (piece[l] < spheres);
+    some_sphere |= (piece[l] >= spheres) & (piece[l] < cylinders);
+    some_cylinder |= static_cast<std::int32_t>(piece[l] >= cylinders);
   }
   SurfacePoint<F> point;
   point.position = point.normal = point.tangent = point.shading = {zero, zero, F(T(1))};
   point.u = point.v = zero;
-  if (any_flat) {
-    for (int l = 0; l < kWidth<F>; ++l) index[l] = piece[l] >= 0 && piece[l] < spheres ? piece[l] : 0;
+  if (some_flat) {
+    for (int l = 0; l < kWidth<F>; ++l) index[l] = (piece[l] >= 0) & (piece[l] < spheres) ? piece[l] : 0;
     point = flat_point<F>(scene, row, lane, index);
   }
-  if (any_sphere || any_cylinder) {
+  if (some_sphere | some_cylinder) {
     const Vec<F> origin = row.origin.template load<F>(lane);
     const Vec<F> reached = origin + load<F>(row.distance + lane) * direction;
-    if (any_sphere) {
+    if (some_sphere) {
       for (int l = 0; l < kWidth<F>; ++l) {
-        index[l] = piece[l] >= spheres && piece[l] < cylinders ? piece[l] - spheres : 0;
+        index[l] = (piece[l] >= spheres) & (piece[l] < cylinders) ? piece[l] - spheres : 0;
       }
       blend_points(lanes_from<F>(piece, spheres), sphere_point<F>(scene, reached, index), point);
     }
-    if (any_cylinder) {
+    if (some_cylinder) {
       for (int l = 0; l < kWidth<F>; ++l) index[l] = piece[l] >= cylinders ? piece[l] - cylinders : 0;
       blend_points(lanes_from<F>(piece, cylinders), cylinder_point<F>(scene, reached, index), point);
     }
@@ -272,13 +256,17 @@ inline void surface_at(const TransportScene<scalar_t<F>>& scene, const RayRow<sc
   surface.frame = scene.anisotropic ? frame_along(point.shading, point.tangent) : frame_about(point.shading);
   surface.wo = to_local(surface.frame, -direction);
   // Which side is seen decides what scatters there; the shading normal says which it is.
-  alignas(64) T side[kLanes], turn[kLanes];
-  store(side, surface.wo.z);
+  alignas(64) T side[kLanes], facing[kLanes], turn[kLanes];
+  store(side, surface.wo.z), store(facing, surface.facing);
+  for (int l = 0; l < kWidth<F>; ++l) index[l] = piece[l] < 0 ? 0 : piece[l];
+  alignas(64) std::int32_t sides[4 * kLanes];  // front, back, two_sided, light
+  gather_quads<std::int32_t, kWidth<F>>(scene.sides, sizeof(PieceSides), index, sides);
   for (int l = 0; l < kWidth<F>; ++l) {
-    const SurfaceData& of_lane = scene.surfaces[scene.piece_surface[piece[l] < 0 ? 0 : piece[l]]];
-    const bool back = side[l] < T(0);
-    surface.material[l] = piece[l] < 0 ? -1 : back ? of_lane.back : of_lane.front;
-    turn[l] = back && of_lane.two_sided ? T(1) : T(0);
+    const std::int32_t front = sides[l], back = sides[kLanes + l], two_sided = sides[2 * kLanes + l],
+                       light = sides[3 * kLanes + l], seen = side[l] < T(0) ? back : front;
+    surface.material[l] = piece[l] < 0 ? -1 : seen;
+    surface.light[l] = (piece[l] >= 0) & (facing[l] > T(0)) ? light : -1;
+    turn[l] = (side[l] < T(0)) & (two_sided != 0) ? T(1) : T(0);
   }
   if (!scene.two_sided) return;
   const auto turned = load_mask<F>(turn);

@@ -80,24 +80,22 @@ inline mask_t<F> emitted(const TransportScene<scalar_t<F>>& scene, const RayRow<
                          const Surface<F>& surface, std::int32_t* element, F* radiance) {
   using T = scalar_t<F>;
   const F zero(T(0));
-  alignas(64) T facing[kLanes];
-  store(facing, surface.facing);
   alignas(64) std::int32_t index[kLanes];
-  bool any = false, any_beyond = false;
+  std::int32_t any = 0, any_beyond = 0;
   for (int l = 0; l < kWidth<F>; ++l) {
-    const std::int32_t piece = row.piece[lane + l];
-    const bool beyond = piece < 0 && row.active[lane + l] != T(0) && scene.environment_light >= 0;
-    element[l] = beyond ? scene.environment_light : piece >= 0 && facing[l] > T(0) ? scene.piece_light[piece] : -1;
+    const std::int32_t beyond =
+        (row.piece[lane + l] < 0) & (row.active[lane + l] != T(0)) & (scene.environment_light >= 0);
+    element[l] = beyond ? scene.environment_light : surface.light[l];
     index[l] = element[l] < 0 ? 0 : element[l];
-    any |= element[l] >= 0;
+    any |= static_cast<std::int32_t>(element[l] >= 0);
     any_beyond |= beyond;
   }
   for (int c = 0; c < C; ++c) radiance[c] = zero;
   const mask_t<F> seen = lanes_from<F>(element, 0);
   if (!any) return seen;
-  for (int c = 0; c < C; ++c) {
-    radiance[c] = select(seen, gather_field<F>(scene.lights, &LightElement<T>::radiance, c, index), zero);
-  }
+  F found[C];
+  LaneEntries<F, LightElement<T>>(scene.lights, index)(&LightElement<T>::radiance, found);
+  for (int c = 0; c < C; ++c) radiance[c] = select(seen, found[c], zero);
   if (any_beyond) {
     F from_beyond[3];
     environment_radiance(*scene.environment, row.direction.template load<F>(lane), from_beyond);

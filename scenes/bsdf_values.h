@@ -4,8 +4,8 @@
 // whose z axis is the shading normal; `wo` is towards where light is observed, `wi` towards where it comes from, both
 // of unit length, on either side. Each has
 //   explicit Class(const Get& get)              from materials (scenes/material_data.h): get(&MaterialData<T>::alpha_u)
-//                                               is each lane's roughness, get(&MaterialData<T>::reflectance, c) its
-//                                               channel c, with the texture of that lane looked up;
+//                                               is each lane's roughness, get(&MaterialData<T>::reflectance, out) fills
+//                                               the C channels of `out`, each lane's texture looked up;
 //   BsdfValue<F, C> evaluate(wo, wi)
 //   BsdfSample<F, C> sample(wo, u_lobe, u1, u2) numbers in [0, 1);
 //   kChooses                                    whether sample reads u_lobe: there are two lobes to choose from;

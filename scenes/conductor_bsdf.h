@@ -15,12 +15,10 @@ class ConductorReflectance {
   using T = scalar_t<F>;
   template <class Get>
   explicit ConductorReflectance(const Get& get) {
-    for (int c = 0; c < C; ++c) {
-      reflectance_[c] = get(&MaterialData<T>::reflectance, c);
-      eta_[c] = get(&MaterialData<T>::eta, c);
-      k_[c] = get(&MaterialData<T>::k, c);
-      coloured_ = coloured_ || any_lane(eta_[c] > F(T(0)));
-    }
+    get(&MaterialData<T>::reflectance, reflectance_);
+    get(&MaterialData<T>::eta, eta_);
+    get(&MaterialData<T>::k, k_);
+    for (int c = 0; c < C; ++c) coloured_ = coloured_ || any_lane(eta_[c] > F(T(0)));
   }
   /// Multiplies each channel of `values` by it, for a cosine in [0, 1].
   void tint(const F& cos_theta, F* values) const {

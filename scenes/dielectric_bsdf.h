@@ -24,10 +24,8 @@ class DielectricBsdf {
 
   template <class Get>
   explicit DielectricBsdf(const Get& get) : ior_(get(&MaterialData<T>::ior)) {
-    for (int c = 0; c < C; ++c) {
-      specular_[c] = get(&MaterialData<T>::specular, c);
-      transmittance_[c] = get(&MaterialData<T>::transmittance, c);
-    }
+    get(&MaterialData<T>::specular, specular_);
+    get(&MaterialData<T>::transmittance, transmittance_);
   }
 
   BsdfValue<F, C> evaluate(const Vec<F>& /*wo*/, const Vec<F>& /*wi*/) const {

@@ -17,7 +17,7 @@ class DiffuseBsdf {
 
   template <class Get>
   explicit DiffuseBsdf(const Get& get) {
-    for (int c = 0; c < C; ++c) reflectance_[c] = get(&MaterialData<T>::reflectance, c);
+    get(&MaterialData<T>::reflectance, reflectance_);
   }
 
   BsdfValue<F, C> evaluate(const Vec<F>& wo, const Vec<F>& wi) const {

@@ -21,9 +21,11 @@ class PhongBsdf {
   explicit PhongBsdf(const Get& get)
       : exponent_(get(&MaterialData<T>::exponent)), share_(get(&MaterialData<T>::specular_share)) {
     const F inv_pi(std::numbers::inv_pi_v<T>), inv_2pi(T(0.5) * std::numbers::inv_pi_v<T>);
+    get(&MaterialData<T>::reflectance, diffuse_);
+    get(&MaterialData<T>::specular, lobe_);
     for (int c = 0; c < C; ++c) {
-      diffuse_[c] = get(&MaterialData<T>::reflectance, c) * inv_pi;
-      lobe_[c] = get(&MaterialData<T>::specular, c) * (exponent_ + F(T(2))) * inv_2pi;
+      diffuse_[c] = diffuse_[c] * inv_pi;
+      lobe_[c] = lobe_[c] * (exponent_ + F(T(2))) * inv_2pi;
     }
     lobe_pdf_ = share_ * (exponent_ + F(T(1))) * inv_2pi;
     cosine_pdf_ = (F(T(1)) - share_) * inv_pi;

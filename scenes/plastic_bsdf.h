@@ -23,11 +23,9 @@ class CoatedGround {
   template <class Get>
   explicit CoatedGround(const Get& get) : share_(get(&MaterialData<T>::specular_share)) {
     const F divisor = get(&MaterialData<T>::diffuse_divisor), tint = get(&MaterialData<T>::diffuse_tint);
-    for (int c = 0; c < C; ++c) {
-      const F rho = get(&MaterialData<T>::reflectance, c);
-      albedo_[c] = rho / (divisor - tint * rho);
-      specular_[c] = get(&MaterialData<T>::specular, c);
-    }
+    get(&MaterialData<T>::reflectance, albedo_);
+    get(&MaterialData<T>::specular, specular_);
+    for (int c = 0; c < C; ++c) albedo_[c] = albedo_[c] / (divisor - tint * albedo_[c]);
   }
 
   struct Choice {

@@ -26,10 +26,8 @@ class RoughDielectricBsdf {
   explicit RoughDielectricBsdf(const Get& get)
       : ior_(get(&MaterialData<T>::ior)),
         distribution_(get(&MaterialData<T>::alpha_u), get(&MaterialData<T>::alpha_v)) {
-    for (int c = 0; c < C; ++c) {
-      specular_[c] = get(&MaterialData<T>::specular, c);
-      transmittance_[c] = get(&MaterialData<T>::transmittance, c);
-    }
+    get(&MaterialData<T>::specular, specular_);
+    get(&MaterialData<T>::transmittance, transmittance_);
   }
 
   BsdfValue<F, C> evaluate(const Vec<F>& wo, const Vec<F>& wi) const {

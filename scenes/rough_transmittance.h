@@ -21,7 +21,7 @@ class RoughTransmittance {
   explicit RoughTransmittance(const Get& get)
       : inverse_width_(get(&MaterialData<T>::transmittance_inverse_width)),
         scale_(get(&MaterialData<T>::transmittance_scale)) {
-    for (int i = 0; i < kTransmittanceTerms; ++i) terms_[i] = get(&MaterialData<T>::transmittance_terms, i);
+    get(&MaterialData<T>::transmittance_terms, terms_);
   }
 
   /// For a cosine in [0, 1]; in [0, 1]. By Clenshaw's recurrence.

@@ -23,9 +23,9 @@ struct UniformMaterial {
   using T = scalar_t<F>;
   const MaterialData<T>& data;
   F operator()(T MaterialData<T>::*field) const { return F(data.*field); }
-  template <std::size_t N>
-  F operator()(T (MaterialData<T>::*field)[N], int i) const {
-    return F((data.*field)[i]);
+  template <std::size_t N, std::size_t C>
+  void operator()(T (MaterialData<T>::*field)[N], F (&out)[C]) const {
+    for (std::size_t c = 0; c < C; ++c) out[c] = F((data.*field)[c]);
   }
 };
 

@@ -80,9 +80,9 @@ struct PerLane {
   F operator()(double MaterialData<double>::*field) const {
     return gather([&](const auto& m) { return m.*field; });
   }
-  template <std::size_t N>
-  F operator()(double (MaterialData<double>::*field)[N], int c) const {
-    return gather([&](const auto& m) { return (m.*field)[c]; });
+  template <std::size_t N, std::size_t C>
+  void operator()(double (MaterialData<double>::*field)[N], F (&out)[C]) const {
+    for (std::size_t c = 0; c < C; ++c) out[c] = gather([&](const auto& m) { return (m.*field)[c]; });
   }
 };
 
