@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include "core/error.h"
+#include "core/installed_folders.h"
 
 namespace halfslope {
 namespace {
@@ -31,19 +32,9 @@ bool runs(Isa isa) {
 }
 
 std::vector<std::filesystem::path> kernel_folders() {
-  std::vector<std::filesystem::path> folders;
-  if (const char* asked = std::getenv("HALFSLOPE_KERNELS")) folders.emplace_back(asked);
-  std::error_code ignored;
-  const auto executable = std::filesystem::read_symlink("/proc/self/exe", ignored);
-  if (!executable.empty()) {
-    const auto folder = executable.parent_path();
-    folders.push_back(folder / "kernels");
-    const auto libdir = std::filesystem::path(HALFSLOPE_INSTALL_LIBDIR).filename();
-    for (const auto& lib : {std::filesystem::path("lib"), libdir})
-      folders.push_back(folder.parent_path() / lib / "halfslope");
-  }
-  folders.emplace_back(std::filesystem::path(HALFSLOPE_INSTALL_LIBDIR) / "halfslope");
-  return folders;
+  const std::filesystem::path libdir = HALFSLOPE_INSTALL_LIBDIR;
+  return installed_folders("HALFSLOPE_KERNELS", "kernels", {"lib/halfslope", libdir.filename() / "halfslope"},
+                           libdir / "halfslope");
 }
 
 void* open_library(Isa isa) {

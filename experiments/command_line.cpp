@@ -24,7 +24,8 @@ int parse_and_run(int argc, const char* const* argv, const Catalogue& catalogue)
   app.failure_message(CLI::FailureMessage::simple);
   app.footer(
       "Environment: HALFSLOPE_ISA (scalar, baseline, avx2, avx512) chooses the kernels, HALFSLOPE_CACHE the folder of "
-      "references, HALFSLOPE_KERNELS where kernels are looked for first.\n"
+      "references, HALFSLOPE_KERNELS and HALFSLOPE_SCENES where kernels and shipped "
+      "scenes' files are looked for first.\n"
       "Exit codes: 0 done, 1 a check failed or a cell is invalid, 2 usage, 3 bad input, 4 input/output, 130 "
       "interrupted.");
 

@@ -2,17 +2,23 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+
 #include "core/error.h"
+#include "core/installed_folders.h"
 #include "scenes/loader.h"
 #include "scenes/shipped_files.h"
 #include "scenes/substitution.h"
 
 namespace halfslope {
 
-// To add a scene: put NAME.xml into this folder (the build compiles it in) and its entry here.
+// To add a scene: put NAME.xml into this folder (the build compiles it in) and its entry here. Meshes and images go
+// beside it, as NAME.ply, NAME.obj or NAME.exr: the build copies them to where the program finds them.
 std::vector<SceneEntry> rendered_scenes() {
   return {
       {"veach-mis", "four glossy plates, from smooth to rough, reflect four spheres, from small to large",
+       "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
+      {"veach-mis-plastic", "the same with plates of rough plastic, as in the scene file that renderers pass on",
        "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
       {"veach-mis-phong", "the same with plates that are Phong lobes",
        "Veach & Guibas, Optimally Combining Sampling Techniques for Monte Carlo Rendering, SIGGRAPH 1995, fig. 2"},
@@ -32,8 +38,25 @@ std::vector<SceneEntry> rendered_scenes() {
        "1984"},
       {"glossy-indirect", "a lamp that shines at the ceiling lights a room with a glossy floor; for paths",
        "light that no connection with the lamp finds"},
+      {"environment-mesh", "a glossy knot of 3072 triangles on the ground under a clear sky with its sun",
+       "ISO 15469:2004, CIE standard general sky, type 12"},
   };
 }
+
+namespace {
+
+/// The folder of the files that shipped scenes name; empty, for the current one, where there is none.
+std::filesystem::path shipped_folder() {
+  const std::filesystem::path share = HALFSLOPE_INSTALL_DATADIR;
+  for (const auto& folder :
+       installed_folders("HALFSLOPE_SCENES", "scenes", {"share/halfslope/scenes"}, share / "halfslope" / "scenes")) {
+    std::error_code ignored;
+    if (std::filesystem::is_directory(folder, ignored)) return folder;
+  }
+  return {};
+}
+
+}  // namespace
 
 std::optional<std::string_view> shipped_scene_text(std::string_view name) {
   for (const ShippedFile& file : shipped_files()) {
@@ -46,7 +69,7 @@ Scene load_catalogue_scene(std::string_view name) {
   const std::string head(name.substr(0, name.find(':')));
   if (const auto text = shipped_scene_text(head)) {
     const SceneName full = parse_scene_name(fmt::format("{}.xml{}", head, name.substr(head.size())));
-    return parse_scene(*text, full.file, full.parameters);
+    return parse_scene(*text, (shipped_folder() / full.file).string(), full.parameters);
   }
   std::vector<std::string> names;
   std::string allowed;

@@ -12,6 +12,7 @@
 
 #include "scenes/catalogue.h"
 #include "scenes/closed_form.h"
+#include "scenes/environment_map.h"
 #include "scenes/phong.h"
 #include "scenes/solid_angle.h"
 
@@ -194,6 +195,40 @@ TEST(VeachMisPhong, IsVeachMisWithOtherPlates) {
   for (int x = 0; x < 96; x += 5) {
     EXPECT_EQ(ggx.sensor.ray(x, 40, 96, 64).direction, phong.sensor.ray(x, 40, 96, 64).direction);
   }
+}
+
+TEST(VeachMisPlastic, HasThePlatesOfTheClassicFile) {
+  const Scene ggx = load_catalogue_scene("veach-mis"), plastic = load_catalogue_scene("veach-mis-plastic");
+  ASSERT_EQ(plastic.primitives.size(), ggx.primitives.size());
+  for (std::size_t i = 0; i < ggx.primitives.size(); ++i) {
+    const Primitive &a = ggx.primitives[i], &b = plastic.primitives[i];
+    EXPECT_EQ(a.id, b.id);
+    EXPECT_TRUE((a.radiance == b.radiance).all());
+    EXPECT_EQ(area(a), area(b));
+    if (a.bsdf.kind != BsdfKind::kRoughConductor) continue;
+    EXPECT_EQ(b.bsdf.kind, BsdfKind::kRoughPlastic);
+    EXPECT_EQ(b.bsdf.distribution, Distribution::kBeckmann);
+    EXPECT_EQ(b.bsdf.alpha, a.bsdf.alpha);
+    EXPECT_NEAR(b.bsdf.ior, 2 / 1.000277, 1e-6);  // over that of air
+    EXPECT_TRUE((b.bsdf.reflectance == Rgb(0.07, 0.09, 0.13)).all());
+  }
+}
+
+TEST(EnvironmentMesh, HasItsMeshAndItsSkyWithTheSunBehindTheCamera) {
+  const Scene scene = load_catalogue_scene("environment-mesh");
+  EXPECT_EQ(std::get<std::shared_ptr<const Mesh>>(find(scene, "knot").shape)->triangles.size(), 3072u);
+  ASSERT_TRUE(scene.environment);
+  const Vec3 sun(std::cos(2 * std::numbers::pi / 9) * std::sin(-std::numbers::pi / 3),
+                 std::sin(2 * std::numbers::pi / 9),
+                 std::cos(2 * std::numbers::pi / 9) * std::cos(-std::numbers::pi / 3));
+  const EnvironmentMap<double> map(*scene.environment);
+  double at_sun[3], beside[3], zenith[3];
+  environment_radiance(map.data(), Vec<double>{sun.x(), sun.y(), sun.z()}, at_sun);
+  environment_radiance(map.data(), Vec<double>{-sun.x(), sun.y(), sun.z()}, beside);
+  environment_radiance(map.data(), Vec<double>{0, 1, 0}, zenith);
+  EXPECT_GT(at_sun[1], 1000);
+  EXPECT_LT(beside[1], 5);
+  EXPECT_NEAR(zenith[1], 0.8, 0.02);  // luminance 1, tinted
 }
 
 /// ∫ L f_r cos θ dω over the light's cone by the midpoint rule: equal steps in s, 1 − cos = s² (1 − cos σ), resolve a

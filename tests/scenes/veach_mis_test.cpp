@@ -46,8 +46,10 @@ TEST(Catalogue, UnknownNameOffersTheNearest) {
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ExitCode::kBadInput);
     EXPECT_STREQ(error.what(),
-                 "unknown scene 'veach-mi', allowed: veach-mis, veach-mis-phong, diffuse-rectangle, diffuse-disk, "
-                 "diffuse-sphere, furnace, glossy-reflection, cornell-box, glossy-indirect; did you mean 'veach-mis'?");
+                 "unknown scene 'veach-mi', allowed: veach-mis, veach-mis-plastic, veach-mis-phong, diffuse-rectangle, "
+                 "diffuse-disk, "
+                 "diffuse-sphere, furnace, glossy-reflection, cornell-box, glossy-indirect, environment-mesh; did you "
+                 "mean 'veach-mis'?");
   }
 }
 
