@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
+#include <utility>
 
 #include "scenes/catalogue.h"
 #include "tests/estimators/estimates.h"
 #include "tests/estimators/path_scenes.h"
+#include "tests/estimators/planted_error.h"
 
 namespace halfslope {
 namespace {
@@ -48,7 +50,8 @@ void compare(const std::string& name, const IntegralSource& source, int pixel, s
              std::vector<Claim>& claims) {
   std::vector<Estimates> base;
   for (const std::string& light : light_techniques()) {
-    const auto names = path_estimators(light);
+    auto names = path_estimators(light);
+    if (light == "light") names.push_back("path-bsdf");
     const auto found =
         estimate_together<double>(source, pixel, names, {.estimator = "", .rounds = paths, .replicates = 128});
     if (base.empty()) base = {found[2]};  // path-balance@light+bsdf
@@ -75,6 +78,73 @@ TEST(PathAgreement, OfEveryEstimatorOnShippedScenes) {
     }
   }
   for (const Claim& claim : rejected(claims)) ADD_FAILURE() << claim.what << ": p = " << claim.p;
+}
+
+/// A floor of one material in light from all around, where directions from the BSDF and directions towards the light
+/// both serve well.
+Scene open_floor(const Bsdf& bsdf) {
+  Scene scene;
+  scene.primitives = {made_of(rectangle(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()), bsdf)};
+  Environment sky;
+  sky.radiance = grey(1);
+  scene.environment = sky;
+  scene.sensor = one_ray(Vec3(0, -1, 1), Vec3(0, 1, -1));
+  return scene;
+}
+
+std::vector<std::pair<std::string, Bsdf>> spread_bsdfs() {
+  std::vector<std::pair<std::string, Bsdf>> all = {{"diffuse", diffuse(grey(0.8))},
+                                                   {"phong", phong(grey(0.4), grey(0.5), 8)}};
+  for (const auto distribution : {Distribution::kGgx, Distribution::kBeckmann}) {
+    const char* which = distribution == Distribution::kGgx ? "ggx" : "beckmann";
+    for (const auto kind : {BsdfKind::kRoughConductor, BsdfKind::kRoughPlastic, BsdfKind::kRoughDielectric}) {
+      Bsdf bsdf = conductor(0.5);
+      bsdf.kind = kind;
+      bsdf.distribution = distribution;
+      bsdf.specular = bsdf.transmittance = Rgb::Ones();
+      bsdf.reflectance = grey(kind == BsdfKind::kRoughConductor ? 1 : 0.5);
+      bsdf.ior = 1.5;
+      all.emplace_back(fmt::format("{} {}", which, static_cast<int>(kind)), bsdf);
+    }
+  }
+  return all;
+}
+
+/// Claims that all estimators have the mean of path-light, whose samples know nothing of the BSDF's density, and of
+/// path-bsdf.
+std::vector<Claim> close_claims(const std::string& name, const IntegralSource& source) {
+  const std::vector<std::string> names = {"path-light", "path-bsdf",   "path-average", "path-balance",
+                                          "path-power", "path-cutoff", "path-maximum"};
+  const auto found = estimate_together<float>(source, 0, names, {.estimator = "", .rounds = 32768, .replicates = 128});
+  std::vector<Claim> claims;
+  for (std::size_t base : {0u, 1u}) {
+    for (std::size_t k = base + 1; k < names.size(); ++k) {
+      const double p = p_value(found[k][0], found[base][0], 1e-5);
+      claims.push_back({fmt::format("{}: {} and {}", name, names[base], names[k]), p});
+    }
+  }
+  return claims;
+}
+
+// And it would be seen if they did not: a density that is 1 % off where a BSDF draws by it fails this very test.
+TEST(PathAgreement, OfEveryBsdfToWellBelowOnePercent) {
+  std::vector<Claim> claims;
+  for (const auto& [name, bsdf] : spread_bsdfs()) {
+    const PathTransport right(open_floor(bsdf), 1, 1, {2, 0});
+    const auto own = close_claims(name, right);
+    claims.insert(claims.end(), own.begin(), own.end());
+    const PlantedError wrong(right, WrongPdf::kSampled, 1.01);
+    EXPECT_FALSE(rejected(close_claims(name, wrong)).empty()) << name << " drawn by a density 1 % off";
+  }
+  for (const Claim& claim : rejected(claims)) ADD_FAILURE() << claim.what << ": p = " << claim.p;
+}
+
+// Where a density only weighs samples, an error in it takes as much from one technique as it gives to the other, but
+// for what lies between f's two halves: less than a quarter of it.
+TEST(PathAgreement, FindsAWrongDensityInWeightsAlone) {
+  const PathTransport right(open_floor(diffuse(grey(0.8))), 1, 1, {2, 0});
+  EXPECT_TRUE(rejected(close_claims("diffuse", PlantedError(right, WrongPdf::kNowhere, 1))).empty());
+  EXPECT_FALSE(rejected(close_claims("diffuse", PlantedError(right, WrongPdf::kEvaluated, 1.02))).empty());
 }
 
 // At depth 2 paths carry what the eye sees and what is scattered once: direct lighting, which has kernels of its own.
