@@ -21,6 +21,7 @@ namespace halfslope {
 struct Technique {
   std::string name;
   Layout layout;
+  std::string misses = {};  ///< what contributes and its samples never reach, in words; empty: they reach all
 };
 
 /// As a TechniqueCall's technique: a path, with a sample of each technique in `set` at every vertex.

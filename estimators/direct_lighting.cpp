@@ -12,25 +12,6 @@
 namespace halfslope {
 namespace {
 
-struct NamedTechnique {
-  const char* name;
-  TransportTechnique meaning;
-};
-
-/// In the order in which estimators draw them.
-constexpr std::array kTechniques = {
-    NamedTechnique{"light", TransportTechnique::kLight},
-    NamedTechnique{"bsdf", TransportTechnique::kBsdf},
-    NamedTechnique{"hemisphere", TransportTechnique::kHemisphere},
-    NamedTechnique{"cosine", TransportTechnique::kCosine},
-    NamedTechnique{"surface", TransportTechnique::kSurface},
-    NamedTechnique{"light-power", TransportTechnique::kLightPower},
-    NamedTechnique{"light-bvh", TransportTechnique::kLightBvh},
-    NamedTechnique{"light-solid-angle", TransportTechnique::kLightSolidAngle},
-    NamedTechnique{"light-power-solid-angle", TransportTechnique::kLightPowerSolidAngle},
-    NamedTechnique{"light-bvh-solid-angle", TransportTechnique::kLightBvhSolidAngle},
-};
-
 /// Whether the technique's first number chooses among several: one light, one surface, or one lobe, is no choice, and
 /// takes no dimension.
 bool chooses(TransportTechnique technique, std::size_t lights, std::size_t surfaces, bool lobes) {
@@ -61,11 +42,13 @@ DirectLighting::DirectLighting(Scene scene, int width, int height)
       transport_(scene_, tracing_, false) {
   const bool lobes = chooses_lobes(scene_);
   const std::size_t lights = plain_ ? emitters_.lights.size() : transport_.chosen();
-  for (const NamedTechnique& technique : kTechniques) {
-    if (technique.meaning == TransportTechnique::kSurface && scene_.environment) continue;
-    const bool choice = chooses(technique.meaning, lights, count_pieces(scene_), lobes);
-    techniques_.push_back({technique.name, choice ? Layout{{1, 2}} : Layout{{2}}});
-    meanings_.push_back(technique.meaning);
+  for (int t = 0; t < kTransportTechniques; ++t) {
+    const auto technique = static_cast<TransportTechnique>(t);
+    if (technique == TransportTechnique::kSurface && scene_.environment) continue;
+    const bool choice = chooses(technique, lights, count_pieces(scene_), lobes);
+    techniques_.push_back({kTransportNames[static_cast<std::size_t>(t)], choice ? Layout{{1, 2}} : Layout{{2}},
+                           is_directional(technique) ? "" : missed_by_lights(scene_)});
+    meanings_.push_back(technique);
   }
   for (std::size_t i = 0; i < scene_.primitives.size(); ++i) {
     if (scene_.primitives[i].emits) lights_.push_back(static_cast<int>(i));

@@ -90,6 +90,26 @@ std::string default_techniques(std::span<const Technique> techniques) {
   return fmt::format("{}", fmt::join(names_of(techniques), "+"));
 }
 
+/// The estimator, if it comes to the integral's value: a technique that misses some of it needs weights that know, and
+/// another technique that does not.
+Estimator checked(Estimator estimator, std::span<const Technique> techniques) {
+  const auto misses = [&](int t) { return !techniques[static_cast<std::size_t>(t)].misses.empty(); };
+  const auto& drawn = estimator.allocation.techniques;
+  const auto some = std::ranges::find_if(drawn, misses);
+  if (some == drawn.end()) return estimator;
+  const Technique& technique = techniques[static_cast<std::size_t>(*some)];
+  if (std::ranges::all_of(drawn, misses)) {
+    fail(ExitCode::kBadInput, "estimator '{}' would be biased: {} misses {}; combine it, as balance@{}+bsdf does",
+         estimator.name, technique.name, technique.misses, technique.name);
+  }
+  if (estimator.heuristic.kind == HeuristicKind::kAverage) {
+    fail(ExitCode::kBadInput,
+         "estimator '{}' would be biased: {} misses {}, which an average weighs by half; take balance", estimator.name,
+         technique.name, technique.misses);
+  }
+  return estimator;
+}
+
 }  // namespace
 
 int Allocation::round() const { return one_sample || path ? 1 : std::accumulate(counts.begin(), counts.end(), 0); }
@@ -245,7 +265,9 @@ void EstimatorCatalogue::parse_heuristic(Estimator& estimator, std::string_view 
 }
 
 Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Technique> techniques) const {
-  if (const auto technique = find(techniques, name)) return {name, {}, {{*technique}, {1}}};
+  if (const auto technique = find(techniques, name)) {
+    return checked({name, {}, {{*technique}, {1}}}, techniques);
+  }
   const auto at = name.find('@');
   Estimator estimator;
   estimator.name = name;
@@ -259,7 +281,7 @@ Estimator EstimatorCatalogue::parse(const std::string& name, std::span<const Tec
     estimator.heuristic = {};
     if (one_sample) estimator.allocation = {estimator.allocation.techniques, {1}};
   }
-  return estimator;
+  return checked(std::move(estimator), techniques);
 }
 
 Estimator EstimatorCatalogue::parse(const std::string& name, const IntegralSource& source) const {
@@ -296,7 +318,7 @@ Estimator EstimatorCatalogue::parse_path(const std::string& name, std::span<cons
          name);
   }
   estimator.allocation = pair_with(0);
-  if (at == std::string_view::npos) return estimator;
+  if (at == std::string_view::npos) return checked(std::move(estimator), techniques);
   const Allocation asked = parse_allocation(name, bare.substr(at + 1), techniques);
   if (asked.techniques.size() != 2 || asked.techniques[1] != bsdf || asked.counts != std::vector{1, 1}) {
     auto lights = names_of(techniques);
@@ -306,7 +328,7 @@ Estimator EstimatorCatalogue::parse_path(const std::string& name, std::span<cons
          fmt::join(lights, ", "));
   }
   estimator.allocation = pair_with(asked.techniques[0]);
-  return estimator;
+  return checked(std::move(estimator), techniques);
 }
 
 Estimator parse_estimator(const std::string& name, std::span<const Technique> techniques) {

@@ -7,12 +7,13 @@
 //
 // unbiased for any weights with Σ_i w_i(x) = 1 where f(x) ≠ 0 and w_i(x) = 0 where p_i(x) = 0. Here
 //
-//   only i    w_i = 1                               technique i alone, of samples that others are drawn beside
+//   only i    w_i = 1; w_k = 1 where p_i = 0        technique i alone, and of samples drawn beside what it cannot find
 //   average   w_i = 1/n                             the mean of the techniques' own estimators
 //   balance   w_i = c_i p_i / Σ_k c_k p_k           eq. 9.8
 //   power β   w_i = (c_i p_i)^β / Σ_k (c_k p_k)^β   section 9.2.3
 //   cutoff α  w_i = c_i p_i / Σ_k {c_k p_k : c_k p_k ≥ α q} where c_i p_i ≥ α q, q = max_k c_k p_k, else 0
-//   section 9.2.3 maximum   w_i = 1 for the first i with c_i p_i = q, else 0   section 9.2.3
+//                                                   section 9.2.3
+//   maximum   w_i = 1 for the first i with c_i p_i = q, else 0   section 9.2.3
 //
 // Densities span more orders of magnitude than binary32 has, and their powers more still. So every weight is made of
 // the ratios r_k = c_k p_k / max_l c_l p_l, which lie in [0, 1] with one of them 1: sums lie in [1, n], nothing
@@ -118,7 +119,8 @@ inline F weight(const Heuristic& heuristic, const F* ratios, int techniques, int
     case HeuristicKind::kSingle:
       return F(T(1));
     case HeuristicKind::kOnly:
-      return F(i == static_cast<int>(heuristic.parameter) ? T(1) : T(0));
+      if (i == static_cast<int>(heuristic.parameter)) return F(T(1));
+      return select(ratios[static_cast<int>(heuristic.parameter)] == F(T(0)), F(T(1)), F(T(0)));
     case HeuristicKind::kAverage:
       return F(T(1) / static_cast<T>(techniques));
     case HeuristicKind::kBalance: {

@@ -14,20 +14,13 @@
 namespace halfslope {
 namespace {
 
-struct NamedWay {
-  const char* name;
-  LightWay way;
-};
-
 /// The light techniques, in the order of the source's techniques.
-constexpr std::array kLightWays = {
-    NamedWay{"light", {LightChoice::kUniform, false}},
-    NamedWay{"light-power", {LightChoice::kPower, false}},
-    NamedWay{"light-bvh", {LightChoice::kBvh, false}},
-    NamedWay{"light-solid-angle", {LightChoice::kUniform, true}},
-    NamedWay{"light-power-solid-angle", {LightChoice::kPower, true}},
-    NamedWay{"light-bvh-solid-angle", {LightChoice::kBvh, true}},
-};
+constexpr std::array kLightTechniques = {TransportTechnique::kLight,
+                                         TransportTechnique::kLightPower,
+                                         TransportTechnique::kLightBvh,
+                                         TransportTechnique::kLightSolidAngle,
+                                         TransportTechnique::kLightPowerSolidAngle,
+                                         TransportTechnique::kLightBvhSolidAngle};
 
 /// Paths through one pixel. Belongs to one thread.
 class PixelPaths final : public Integral {
@@ -56,8 +49,8 @@ class PixelPaths final : public Integral {
     }
     const TransportData<T>& data = transport_.of<T>();
     kernel({&data.scene(), &*camera, channels_, options_.max_depth, options_.rr_depth,
-            kLightWays[static_cast<std::size_t>(call.set[0])].way, dims_, high_.data(), low_.data(), points.stride(),
-            terms.stride(), terms.data()});
+            way_of(kLightTechniques[static_cast<std::size_t>(call.set[0])]), dims_, high_.data(), low_.data(),
+            points.stride(), terms.stride(), terms.data()});
   }
 
   const LazyTransport& transport_;
@@ -86,8 +79,9 @@ PathTransport::PathTransport(Scene scene, int width, int height, const PathOptio
       chooses_(chooses_lobes(scene_)),
       transport_(scene_, tracing_, true) {
   const bool choice = transport_.chosen() > 1;
-  for (const NamedWay& light : kLightWays) {
-    techniques_.push_back({light.name, choice ? Layout{{1, 2}} : Layout{{2}}});
+  for (const TransportTechnique light : kLightTechniques) {
+    techniques_.push_back({kTransportNames[static_cast<std::size_t>(light)], choice ? Layout{{1, 2}} : Layout{{2}},
+                           missed_by_lights(scene_)});
   }
   techniques_.push_back({"bsdf", chooses_ ? Layout{{1, 2}} : Layout{{2}}});
   if (!filter_.empty()) shape_.start.groups.push_back(2);

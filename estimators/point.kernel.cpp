@@ -8,30 +8,6 @@
 namespace halfslope::kernel {
 namespace {
 
-constexpr LightWay way_of(TransportTechnique technique) {
-  switch (technique) {
-    case TransportTechnique::kSurface:
-      return {LightChoice::kSurface, false};
-    case TransportTechnique::kLightPower:
-      return {LightChoice::kPower, false};
-    case TransportTechnique::kLightBvh:
-      return {LightChoice::kBvh, false};
-    case TransportTechnique::kLightSolidAngle:
-      return {LightChoice::kUniform, true};
-    case TransportTechnique::kLightPowerSolidAngle:
-      return {LightChoice::kPower, true};
-    case TransportTechnique::kLightBvhSolidAngle:
-      return {LightChoice::kBvh, true};
-    default:
-      return {LightChoice::kUniform, false};
-  }
-}
-
-constexpr bool is_directional(TransportTechnique technique) {
-  return technique == TransportTechnique::kBsdf || technique == TransportTechnique::kHemisphere ||
-         technique == TransportTechnique::kCosine;
-}
-
 /// The same surface in every lane.
 template <class F>
 Surface<F> surface_of(const StartPoint<scalar_t<F>>& start) {

@@ -1,11 +1,11 @@
 // What transport kernels are asked for: plain data across the border to an instruction set's library.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 
 #include "estimators/transport_scene.h"
+#include "estimators/transport_techniques.h"
 
 namespace halfslope {
 
@@ -28,12 +28,6 @@ struct PathDims {
   std::int32_t film = -1, lens = -1;
   std::int32_t first_vertex = 0, per_vertex = 0;
   std::int32_t choice = -1, light = -1, lobe = -1, bsdf = -1, roulette = -1;  ///< within a vertex
-};
-
-/// How points on lights are drawn.
-struct LightWay {
-  LightChoice choice = LightChoice::kUniform;
-  bool by_solid_angle = false;
 };
 
 /// One path at each of `count` points. Slot 0 receives what no other technique could have found, weighted 1 by every
@@ -63,21 +57,6 @@ struct StartPoint {
   T u, v;
   std::int32_t material, piece;
 };
-
-/// The techniques that the transport kernels have at one point.
-enum class TransportTechnique : std::uint8_t {
-  kLight,
-  kBsdf,
-  kHemisphere,
-  kCosine,
-  kSurface,
-  kLightPower,
-  kLightBvh,
-  kLightSolidAngle,
-  kLightPowerSolidAngle,
-  kLightBvhSolidAngle
-};
-inline constexpr int kTransportTechniques = 10;
 
 /// One sample of a technique at each of `count` points, all at one start. high[d], low[d]: its own dimensions.
 template <class T>

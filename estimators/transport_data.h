@@ -43,6 +43,9 @@ std::vector<LightSource> list_lights(const Scene& scene);
 /// The scene itself. Throws Error(kBadInput) where it has none.
 Scene with_lights(Scene scene);
 
+/// What of the scene's light no light technique's samples reach, in words; empty: they reach all.
+std::string missed_by_lights(const Scene& scene);
+
 /// Whether only a connection finds such a light.
 bool is_delta(LightKind kind);
 

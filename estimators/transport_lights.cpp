@@ -199,6 +199,11 @@ Scene with_lights(Scene scene) {
        "{}: nothing in the scene emits; give a shape an <emitter type=\"area\">, or the scene an emitter", scene.name);
 }
 
+std::string missed_by_lights(const Scene& scene) {
+  const bool compensated = scene.environment && scene.environment->map && scene.environment->mis_compensation;
+  return compensated ? "what the envmap's mis_compensation leaves to the BSDF" : "";
+}
+
 bool is_delta(LightKind kind) {
   return kind == LightKind::kPoint || kind == LightKind::kSpot || kind == LightKind::kDirectional;
 }

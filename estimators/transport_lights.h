@@ -5,6 +5,7 @@
 #pragma once
 
 #include "estimators/transport_surface.h"
+#include "estimators/transport_techniques.h"
 #include "scenes/measure.h"
 #include "scenes/sphere_cone.h"
 #include "scenes/spherical_rectangle.h"

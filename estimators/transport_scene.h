@@ -108,14 +108,6 @@ struct LightTable {
   const T* probability;  ///< exactly its words · 2⁻³²
 };
 
-/// The ways to choose a light.
-enum class LightChoice : std::uint8_t {
-  kUniform,
-  kPower,
-  kBvh,
-  kSurface  ///< a point of all surfaces alike, most of which do not emit
-};
-
 template <class T>
 struct TransportScene {
   const FlatPiece<T>* flats;

@@ -1,5 +1,6 @@
 // Every way to estimate one integral over paths comes to the same mean.
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/error.h"
 #include "scenes/catalogue.h"
 #include "tests/estimators/estimates.h"
 #include "tests/estimators/path_scenes.h"
@@ -145,6 +147,35 @@ TEST(PathAgreement, FindsAWrongDensityInWeightsAlone) {
   const PathTransport right(open_floor(diffuse(grey(0.8))), 1, 1, {2, 0});
   EXPECT_TRUE(rejected(close_claims("diffuse", PlantedError(right, WrongPdf::kNowhere, 1))).empty());
   EXPECT_FALSE(rejected(close_claims("diffuse", PlantedError(right, WrongPdf::kEvaluated, 1.02))).empty());
+}
+
+// What MIS compensation leaves of the sky to the BSDF, path-light takes from there; an average would lose half of it.
+TEST(PathAgreement, UnderACompensatedSky) {
+  const PathTransport plain(load_catalogue_scene("environment-mesh"), 12, 9, {3, 0});
+  const PathTransport compensated(load_catalogue_scene("environment-mesh:mis_compensation=true"), 12, 9, {3, 0});
+  const auto base = estimate<float>(plain, 90, {.estimator = "path-balance", .rounds = 8192, .replicates = 128});
+  std::vector<Claim> claims;
+  for (const char* name : {"path-light", "path-bsdf", "path-balance", "path-power", "path-maximum"}) {
+    const auto found =
+        estimate<float>(compensated, 90, {.estimator = name, .rounds = 8192, .replicates = 128, .seed = 2});
+    for (std::size_t c = 0; c < 3; ++c) claims.push_back({name, p_value(found[c], base[c], 1e-5)});
+  }
+  for (const Claim& claim : rejected(claims)) ADD_FAILURE() << claim.what << ": p = " << claim.p;
+  const auto refused = [](const std::string& name, const IntegralSource& source) -> std::string {
+    try {
+      EstimatorCatalogue::built_in().parse(name, source);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refused("path-average", compensated), testing::HasSubstr("'path-average' would be biased: light misses"));
+  EXPECT_EQ(refused("path-average", plain), "");
+  const DirectLighting direct(load_catalogue_scene("environment-mesh:mis_compensation=true"), 12, 9);
+  EXPECT_THAT(refused("light-bvh", direct), testing::HasSubstr("balance@light-bvh+bsdf"));
+  EXPECT_THAT(refused("balance@light+light-power", direct), testing::HasSubstr("would be biased"));
+  EXPECT_EQ(refused("balance@light+cosine", direct), "");
+  EXPECT_EQ(refused("bsdf", direct), "");
 }
 
 // At depth 2 paths carry what the eye sees and what is scattered once: direct lighting, which has kernels of its own.
