@@ -48,28 +48,6 @@ double scene_radius(const Scene& scene) {
   return box.isEmpty() ? 1 : 0.5 * box.diagonal().norm();
 }
 
-/// The mean of a spot's intensity over its cone, as a solid angle: 2π ∫ falloff sin θ dθ.
-double spot_angle(const SpotLight& spot) {
-  const double b = spot.beam_width, c = spot.cutoff_angle;
-  const double flat = 2 * std::numbers::pi * (1 - std::cos(b));
-  if (c == b) return flat;
-  // ∫_b^c (c − θ)/(c − b) sin θ dθ = cos b − (sin c − sin b)/(c − b).
-  return flat + 2 * std::numbers::pi * (std::cos(b) - (std::sin(c) - std::sin(b)) / (c - b));
-}
-
-/// The mean of a latitude-longitude map over the sphere.
-Rgb mean_of(const Bitmap& map) {
-  Rgb sum = Rgb::Zero();
-  double weights = 0;
-  for (int y = 0; y < map.height; ++y) {
-    const double weight = std::sin(std::numbers::pi * (y + 0.5) / map.height);
-    const float* row = map.rgb.data() + 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width);
-    for (int x = 0; x < map.width; ++x) sum += weight * Rgb(row[3 * x], row[3 * x + 1], row[3 * x + 2]);
-    weights += weight * map.width;
-  }
-  return sum / weights;
-}
-
 /// Shares of 2³² words in the proportions of `weights`, at least one word each: `last` of a LightTable and the words'
 /// probabilities.
 template <class T>
@@ -171,7 +149,7 @@ std::vector<LightSource> list_lights(const Scene& scene) {
     } else if (const auto* spot = std::get_if<SpotLight>(&scene.delta_lights[d])) {
       light.kind = LightKind::kSpot;
       light.radiance = spot->intensity;
-      light.power = spot_angle(*spot) * mean(spot->intensity);
+      light.power = solid_angle(*spot) * mean(spot->intensity);
     } else {
       const auto& far = std::get<DirectionalLight>(scene.delta_lights[d]);
       light.kind = LightKind::kDirectional;
@@ -184,8 +162,7 @@ std::vector<LightSource> list_lights(const Scene& scene) {
   if (scene.environment) {
     LightSource light;
     light.kind = LightKind::kEnvironment;
-    light.radiance = scene.environment->map ? Rgb(scene.environment->scale * mean_of(*scene.environment->map))
-                                            : scene.environment->radiance;
+    light.radiance = mean_radiance(*scene.environment);
     light.power = std::numbers::pi * disk * mean(light.radiance);
     if ((light.radiance > 0).any()) beyond.push_back(light);
   }

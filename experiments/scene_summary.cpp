@@ -70,30 +70,11 @@ LightSummary summary_of(const PointLight& light) { return {"point", "", 4 * kPi 
 
 LightSummary summary_of(const DirectionalLight& light) { return {"directional", "", light.irradiance, "W/m^2"}; }
 
-/// ∫ 2π sin θ f(θ) dθ with f = 1 up to the beam's width b and (c − θ)/(c − b) from there to the cutoff c: by parts,
-/// 2π (1 − (sin c − sin b)/(c − b)).
-LightSummary summary_of(const SpotLight& light) {
-  const double b = light.beam_width, c = light.cutoff_angle;
-  const double mean_cos = c > b ? (std::sin(c) - std::sin(b)) / (c - b) : std::cos(c);
-  return {"spot", "", 2 * kPi * (1 - mean_cos) * light.intensity, "W"};
-}
+LightSummary summary_of(const SpotLight& light) { return {"spot", "", solid_angle(light) * light.intensity, "W"}; }
 
-/// The radiance integrated over the sphere: a row's pixels share its solid angle, 2π (cos θ₀ − cos θ₁).
+/// The radiance integrated over the sphere.
 LightSummary summary_of(const Environment& environment) {
-  if (!environment.map) return {"constant", "", 4 * kPi * environment.radiance, "W/m^2"};
-  const Bitmap& map = *environment.map;
-  Rgb sum = Rgb::Zero();
-  for (int y = 0; y < map.height; ++y) {
-    Rgb row = Rgb::Zero();
-    for (int x = 0; x < map.width; ++x) {
-      const std::size_t at =
-          3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(x));
-      row += Rgb(map.rgb[at], map.rgb[at + 1], map.rgb[at + 2]);
-    }
-    const double top = kPi * y / map.height, bottom = kPi * (y + 1) / map.height;
-    sum += 2 * kPi * (std::cos(top) - std::cos(bottom)) / map.width * row;
-  }
-  return {"envmap", "", environment.scale * sum, "W/m^2"};
+  return {environment.map ? "envmap" : "constant", "", 4 * kPi * mean_radiance(environment), "W/m^2"};
 }
 
 std::string describe(const Sensor& sensor) {

@@ -148,6 +148,10 @@ Bsdf read_plastic(Properties& properties, Reading& reading, bool rough) {
   read_albedo(properties, "specular_reflectance", reading, bsdf.specular, bsdf.specular_texture);
   bsdf.nonlinear = properties.boolean("nonlinear").value_or(false);
   bsdf.ior = read_relative_ior(properties, "polypropylene", rough);
+  if (rough && bsdf.ior < 1) {
+    // Its model would give back more light than it gets.
+    properties.reject("int_ior", fmt::format("{:.6g} of ext_ior", bsdf.ior), "the larger of the two");
+  }
   return bsdf;
 }
 

@@ -44,4 +44,11 @@ struct Environment {
   bool mis_compensation = false;  ///< sampled by the map less its mean (Karlík and others 2019)
 };
 
+/// The solid angle in sr that a light of a spot's full intensity would fill to emit the spot's power: power over
+/// intensity.
+double solid_angle(const SpotLight& spot);
+
+/// The mean over all directions, scale included; of a map, exactly as it is interpolated.
+Rgb mean_radiance(const Environment& environment);
+
 }  // namespace halfslope

@@ -108,6 +108,38 @@ double cell_solid_angle(const Environment& environment, int row) {
   return 2 * kPi / environment.map->width * (std::cos(row * step) - std::cos((row + 1) * step));
 }
 
+TEST(Environment, MeanRadianceIsThatOfTheInterpolatedMap) {
+  const Environment environment = environment_of(bitmap(9, 6));
+  const EnvironmentMap<double> map(environment);
+  constexpr int kAcross = 9 * 40, kDown = 5 * 200;  // midpoints that no kink divides
+  Rgb sum = Rgb::Zero();
+  for (int j = 0; j < kDown; ++j) {
+    const double theta = kPi * (j + 0.5) / kDown;
+    for (int i = 0; i < kAcross; ++i) {
+      const Vec3 d = direction_at(environment, (i + 0.5) / kAcross, theta);
+      double radiance[3];
+      environment_radiance(map.data(), Vec<double>{d.x(), d.y(), d.z()}, radiance);
+      sum += std::sin(theta) * Rgb(radiance[0], radiance[1], radiance[2]);
+    }
+  }
+  const Rgb expected = sum * kPi / (2 * kDown) / kAcross, found = mean_radiance(environment);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 1e-5);
+}
+
+TEST(Environment, ASpotsSolidAngleIsItsPowerOverItsIntensity) {
+  SpotLight spot;
+  spot.cutoff_angle = 0.9, spot.beam_width = 0.4;
+  double sum = 0;
+  constexpr int kSteps = 100000;
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = 0.9 * (i + 0.5) / kSteps;
+    sum += std::sin(t) * std::min(1.0, (0.9 - t) / 0.5);
+  }
+  EXPECT_NEAR(solid_angle(spot), 2 * kPi * sum * 0.9 / kSteps, 1e-8);
+  spot.beam_width = 0.9;
+  EXPECT_NEAR(solid_angle(spot), 2 * kPi * (1 - std::cos(0.9)), 1e-12);
+}
+
 template <class T>
 class EnvironmentMapOf : public testing::Test {};
 using Numbers = testing::Types<float, double>;

@@ -34,6 +34,8 @@ const std::vector<Wrong> kBsdf = {
      "wrong.xml:3: 'int_ior' of bsdf 'plastic' is 0, allowed: above 0, or a name"},
     {"NoInterface", bsdf("roughdielectric", "<float name='int_ior' value='1.5'/><float name='ext_ior' value='1.5'/>"),
      "wrong.xml:3: 'int_ior' of bsdf 'roughdielectric' is 1.5, and so is ext_ior, allowed: two that differ"},
+    {"CoatOfSmallerIor", bsdf("roughplastic", "<float name='int_ior' value='1'/><float name='ext_ior' value='1.25'/>"),
+     "wrong.xml:3: 'int_ior' of bsdf 'roughplastic' is 0.8 of ext_ior, allowed: the larger of the two"},
     {"Transmittance", bsdf("dielectric", "<float name='specular_transmittance' value='2'/>"),
      "wrong.xml:3: 'specular_transmittance' of bsdf 'dielectric' is (2, 2, 2), allowed: from 0 to 1 in each channel"},
     {"RoughOfSmooth", bsdf("plastic", "<float name='alpha' value='0.1'/>"),
