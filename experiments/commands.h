@@ -57,6 +57,7 @@ struct RenderArguments {
   std::uint64_t samples = 64, seed = 1;
   std::uint32_t replicate = 0;
   std::optional<int> max_depth;  ///< of paths
+  double exposure = 0;           ///< of a PNG: radiance is multiplied by two to it
   int threads = 0;
   bool quiet = false;
 };

@@ -1,10 +1,12 @@
 // points, render and reference.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <variant>
 
+#include "analysis/tone_map.h"
 #include "core/coordinates.h"
 #include "core/csv.h"
 #include "core/error.h"
@@ -83,10 +85,18 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   settings.quiet = a.quiet;
   settings.label = a.scene;
   settings.estimator = check_render(*source, a.estimator, settings, catalogue);
+  const std::filesystem::path out = a.out.empty() ? path_component(a.scene) + ".exr" : a.out;
+  if (out.extension() != ".exr" && out.extension() != ".png") {
+    fail(ExitCode::kUsage, "--out: '{}', allowed: a name that ends in .exr or .png", out.string());
+  }
+  if (!std::isfinite(a.exposure)) fail(ExitCode::kUsage, "--exposure: a finite number, found {}", a.exposure);
   const std::vector<double> values = render_replicate(*source, settings, catalogue);
-  const std::string out = a.out.empty() ? path_component(a.scene) + ".exr" : a.out;
-  write_exr(out, picture(*source, values));
-  if (!a.quiet) message("wrote {}\n", out);
+  if (out.extension() == ".png") {
+    write_png(out, tone_mapped_image(values, source->width(), source->height(), source->channels(), a.exposure));
+  } else {
+    write_exr(out, picture(*source, values));
+  }
+  if (!a.quiet) message("wrote {}\n", out.string());
   return kDone;
 }
 

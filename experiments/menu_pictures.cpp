@@ -10,7 +10,7 @@ namespace halfslope {
 Command add_render(CLI::App& app) {
   const auto kept = std::make_shared<RenderArguments>();
   RenderArguments& render = *kept;
-  CLI::App* command = app.add_subcommand("render", "render one replicate to an EXR image");
+  CLI::App* command = app.add_subcommand("render", "render one replicate to an EXR or PNG image");
   command->add_option("--scene", render.scene, "catalogue name or .xml path")->required()->type_name("SCENE");
   command->add_option("--estimator", render.estimator, "see `halfslope list estimators` (default: balance, or mean)")
       ->type_name("NAME");
@@ -25,7 +25,9 @@ Command add_render(CLI::App& app) {
       ->type_name("D")
       ->check(CLI::Range(1, kMostDepth));
   command->add_option("--precision", render.precision, "f32 or f64")->capture_default_str()->type_name("P");
-  command->add_option("--out,-o", render.out, "image file (default: SCENE.exr)")->type_name("FILE");
+  command->add_option("--out,-o", render.out, "image file, .exr or .png (default: SCENE.exr)")->type_name("FILE");
+  command->add_option("--exposure", render.exposure, "of a .png: radiance is multiplied by 2^STOPS")
+      ->type_name("STOPS");
   add_threads(*command, render.threads, "threads (default: all cores)");
   command->add_flag("--quiet", render.quiet, "no progress");
   return {command, [kept](const Catalogue& catalogue) { return render_command(*kept, catalogue); }};

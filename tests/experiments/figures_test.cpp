@@ -3,6 +3,8 @@
 #include <png.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include "analysis/tone_map.h"
@@ -34,6 +36,16 @@ class Figures : public CommandLine {
   }
 };
 
+RgbImage decoded(const std::string& bytes) {
+  png_image png = {};
+  png.version = PNG_IMAGE_VERSION;
+  EXPECT_NE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()), 0) << png.message;
+  png.format = PNG_FORMAT_RGB;
+  RgbImage pixels(static_cast<int>(png.width), static_cast<int>(png.height));
+  EXPECT_NE(png_image_finish_read(&png, nullptr, pixels.values.data(), 0, nullptr), 0) << png.message;
+  return pixels;
+}
+
 RgbImage embedded(const pugi::xml_node& image) {
   static const std::string kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   const std::string href = image.attribute("xlink:href").value();
@@ -45,13 +57,7 @@ RgbImage embedded(const pugi::xml_node& image) {
     count += 6;
     if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 0xff);
   }
-  png_image png = {};
-  png.version = PNG_IMAGE_VERSION;
-  EXPECT_NE(png_image_begin_read_from_memory(&png, bytes.data(), bytes.size()), 0) << png.message;
-  png.format = PNG_FORMAT_RGB;
-  RgbImage pixels(static_cast<int>(png.width), static_cast<int>(png.height));
-  EXPECT_NE(png_image_finish_read(&png, nullptr, pixels.values.data(), 0, nullptr), 0) << png.message;
-  return pixels;
+  return decoded(bytes);
 }
 
 // Its panels are the pictures that `render` writes, tone-mapped.
@@ -82,6 +88,26 @@ TEST_F(Figures, VeachShowsWhatRenderRenders) {
               AllOf(Contains("α = 0.005"), Contains("α = 0.1"), Contains("light radius"), Contains("0.9"),
                     Contains(HasSubstr("(c) power")), Contains(HasSubstr("N = 8 samples a pixel (independent points)")),
                     Contains(HasSubstr("exposure −1.5 stops"))));
+}
+
+TEST_F(Figures, RenderWritesAPngThatIsTheToneMappedExr) {
+  const std::vector<std::string> words = {"render",       "--scene", "environment-mesh", "--estimator",
+                                          "path-power",   "--quiet", "--samples",        "4",
+                                          "--resolution", "24,18"};
+  ASSERT_EQ(command(words + std::vector<std::string>{"-o", path("p.exr")}).code, 0);
+  ASSERT_EQ(command(words + std::vector<std::string>{"-o", path("p.png"), "--exposure", "-2"}).code, 0);
+  const ExrImage exr = read_exr(path("p.exr"));
+  std::ifstream file(path("p.png"), std::ios::binary);
+  const RgbImage pixels = decoded(std::string(std::istreambuf_iterator<char>(file), {}));
+  ASSERT_EQ(pixels.width, 24);
+  for (std::size_t p = 0; p < 24 * 18; ++p) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(pixels.values[3 * p + c], tone_mapped(exr.channels[2 - c].values[p], -2), 1);
+    }
+  }
+  const Ended ended = command(words + std::vector<std::string>{"-o", path("p.jpg")});
+  EXPECT_EQ(ended.code, 2);
+  EXPECT_THAT(ended.err, HasSubstr("allowed: a name that ends in .exr or .png"));
 }
 
 TEST_F(Figures, GlossyMagnifiesTheSamePartOfEach) {
