@@ -1,6 +1,7 @@
 // A scene as the transport kernels see it (estimators/transport_scene.h), with the arrays that it points to.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <mutex>
 #include <tuple>
@@ -23,6 +24,9 @@ struct Tracing {
 
   Vec3 to_kernel(const Vec3& p) const { return unit * (p - middle); }
 };
+/// Holds every shape, with room to spare.
+Eigen::AlignedBox3d bounds_of(const Scene& scene);
+
 Tracing tracing_of(const Scene& scene, const Intersector& intersector);
 
 /// A light of one piece, or none, as chosen from.

@@ -5,6 +5,7 @@
 
 #include "core/error.h"
 #include "estimators/transport_data.h"
+#include "scenes/shape_hits.h"
 
 namespace halfslope {
 namespace {
@@ -28,23 +29,18 @@ LightKind kind_of(const Shape& shape) {
 std::vector<double> areas_of(const Shape& shape, double all) {
   const auto* pointer = std::get_if<std::shared_ptr<const Mesh>>(&shape);
   if (!pointer) return {all};
+  const Mesh& mesh = **pointer;
   std::vector<double> areas;
-  for (const auto& triangle : (*pointer)->triangles) {
-    const auto corner = [&](std::size_t i) -> Vec3 {
-      return Eigen::Vector3f((*pointer)->positions[triangle[i]].data()).cast<double>();
-    };
-    areas.push_back(0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 p0 = corner(mesh, t, 0);
+    areas.push_back(0.5 * (corner(mesh, t, 1) - p0).cross(corner(mesh, t, 2) - p0).norm());
   }
   return areas;
 }
 
 /// Half the diagonal of the box around all shapes: a ball of that radius about its middle holds them.
 double scene_radius(const Scene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const Primitive& primitive : scene.primitives) {
-    const Vec3 center = middle(primitive), reach = Vec3::Constant(extent(primitive));
-    box.extend(center - reach), box.extend(center + reach);
-  }
+  const Eigen::AlignedBox3d box = bounds_of(scene);
   return box.isEmpty() ? 1 : 0.5 * box.diagonal().norm();
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "estimators/transport_data.h"
+#include "scenes/shape_hits.h"
 
 namespace halfslope {
 namespace {
@@ -19,10 +20,6 @@ struct PlainFlat {
   LightKind outline;
 };
 
-Vec3 corner_of(const Mesh& mesh, std::size_t triangle, std::size_t corner) {
-  return Eigen::Vector3f(mesh.positions[mesh.triangles[triangle][corner]].data()).cast<double>();
-}
-
 PlainFlat flat_of(const Flat& flat, const Tracing& tracing) {
   const Vec3 u = tracing.unit * flat.half_u, v = tracing.unit * flat.half_v, center = tracing.to_kernel(flat.center);
   if (flat.outline == Flat::Outline::kDisk) return {center, u, v, flat.normal, LightKind::kDisk};
@@ -30,9 +27,8 @@ PlainFlat flat_of(const Flat& flat, const Tracing& tracing) {
 }
 
 PlainFlat flat_of(const Mesh& mesh, std::size_t triangle, const Tracing& tracing) {
-  const Vec3 p0 = corner_of(mesh, triangle, 0);
-  const Vec3 u = tracing.unit * (corner_of(mesh, triangle, 1) - p0),
-             v = tracing.unit * (corner_of(mesh, triangle, 2) - p0);
+  const Vec3 p0 = corner(mesh, triangle, 0);
+  const Vec3 u = tracing.unit * (corner(mesh, triangle, 1) - p0), v = tracing.unit * (corner(mesh, triangle, 2) - p0);
   return {tracing.to_kernel(p0), u, v, u.cross(v).normalized(), LightKind::kTriangle};
 }
 
@@ -88,16 +84,15 @@ bool joins(const Mesh& mesh, std::size_t first) {
   if (first + 1 >= mesh.triangles.size() || !mesh.normals.empty() || !mesh.uvs.empty()) return false;
   const auto &a = mesh.triangles[first], &b = mesh.triangles[first + 1];
   if (b[0] != a[0] || b[1] != a[2]) return false;
-  const Vec3 p0 = corner_of(mesh, first, 0), p1 = corner_of(mesh, first, 1), p2 = corner_of(mesh, first, 2),
-             p3 = corner_of(mesh, first + 1, 2);
+  const Vec3 p0 = corner(mesh, first, 0), p1 = corner(mesh, first, 1), p2 = corner(mesh, first, 2),
+             p3 = corner(mesh, first + 1, 2);
   const double size = std::max({p0.cwiseAbs().maxCoeff(), p1.cwiseAbs().maxCoeff(), p2.cwiseAbs().maxCoeff()});
   return (p0 + p2 - p1 - p3).cwiseAbs().maxCoeff() <= std::numeric_limits<float>::epsilon() * size;
 }
 
 PlainFlat joined(const Mesh& mesh, std::size_t first, const Tracing& tracing) {
-  const Vec3 p0 = corner_of(mesh, first, 0);
-  const Vec3 u = tracing.unit * (corner_of(mesh, first, 1) - p0),
-             v = tracing.unit * (corner_of(mesh, first + 1, 2) - p0);
+  const Vec3 p0 = corner(mesh, first, 0);
+  const Vec3 u = tracing.unit * (corner(mesh, first, 1) - p0), v = tracing.unit * (corner(mesh, first + 1, 2) - p0);
   return {tracing.to_kernel(p0), u, v, u.cross(v).normalized(), LightKind::kRectangle};
 }
 
@@ -111,15 +106,20 @@ bool needs_attributes(const Scene& scene) {
 
 }  // namespace
 
-Tracing tracing_of(const Scene& scene, const Intersector& intersector) {
-  Tracing tracing;
-  tracing.embree = intersector.embree();
-  if (tracing.embree) return tracing;
+Eigen::AlignedBox3d bounds_of(const Scene& scene) {
   Eigen::AlignedBox3d box;
   for (const Primitive& primitive : scene.primitives) {
     const Vec3 center = middle(primitive), reach = Vec3::Constant(extent(primitive));
     box.extend(center - reach), box.extend(center + reach);
   }
+  return box;
+}
+
+Tracing tracing_of(const Scene& scene, const Intersector& intersector) {
+  Tracing tracing;
+  tracing.embree = intersector.embree();
+  if (tracing.embree) return tracing;
+  const Eigen::AlignedBox3d box = bounds_of(scene);
   if (box.isEmpty()) return tracing;
   tracing.middle = box.center();
   const double size = box.diagonal().stableNorm();
