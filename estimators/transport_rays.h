@@ -62,15 +62,17 @@ struct alignas(64) RayRow {
   std::int32_t piece[kLanes];
 };
 
-/// Where a line meets a flat piece's plane, and whether inside the piece. A hair's breadth more than the piece counts,
-/// so that no ray slips between two pieces with a common edge.
+/// Where a ray meets a flat piece's plane, and whether inside the piece. A hair's breadth more than the piece counts,
+/// so that no ray slips between two pieces with a common edge. A plane that the ray starts on, within roundings of
+/// coordinates up to 1, is not met: a ray that leaves one triangle's edge would meet its neighbour at once.
 template <class F, LightKind kOutline>
 inline mask_t<F> meets_flat(const FlatTest<scalar_t<F>>& flat, const Vec<F>& origin, const Vec<F>& direction,
                             F& distance, F& a, F& b) {
   using T = scalar_t<F>;
   const F zero(T(0)), one(T(1)), hair(T(8) * std::numeric_limits<T>::epsilon());
   const Vec<F> normal = broadcast_vec<F>(flat.normal);
-  distance = (F(flat.plane) - dot(normal, origin)) / dot(normal, direction);
+  const F height = F(flat.plane) - dot(normal, origin);
+  distance = select(abs(height) > hair, height, zero) / dot(normal, direction);
   const Vec<F> p = {fma(distance, direction.x, origin.x), fma(distance, direction.y, origin.y),
                     fma(distance, direction.z, origin.z)};
   a = dot(broadcast_vec<F>(flat.dual_u), p) - F(flat.offset_u);

@@ -125,7 +125,11 @@ inline SurfacePoint<F> flat_point(const TransportScene<scalar_t<F>>& scene, cons
   }
   point.position = p0 + a * u + b * v;
   point.shading = point.normal;
-  if (scene.anisotropic) point.tangent = gather_vec(flats, &FlatPiece<T>::tangent);
+  if (scene.anisotropic) {
+    // A disk's first texture coordinate grows outwards.
+    const auto disk = flats(&FlatPiece<T>::outline) == F(static_cast<T>(LightKind::kDisk));
+    point.tangent = select_vec(disk, a * u + b * v, gather_vec(flats, &FlatPiece<T>::tangent));
+  }
   point.u = a;
   point.v = b;
   if (!scene.attributes) return point;

@@ -66,7 +66,12 @@ std::unique_ptr<IntegralSource> Catalogue::make_paths(const std::string& name, c
   Scene scene = load_named_scene(name);
   const auto [width, height] = size_of(scene, resolution);
   PathOptions options;
-  options.max_depth = wishes.max_depth.value_or(scene.max_depth.value_or(kUsualDepth));
+  const int own = scene.max_depth.value_or(kUsualDepth);
+  if (!wishes.max_depth && own > kMostDepth) {
+    fail(ExitCode::kBadInput, "scene '{}': its max_depth is {}, and paths go to {} at most; give another max_depth",
+         name, own, kMostDepth);
+  }
+  options.max_depth = wishes.max_depth.value_or(own < 0 ? kMostDepth : own);
   options.rr_depth = wishes.rr_depth.value_or(scene.rr_depth.value_or(0));
   return std::make_unique<PathTransport>(std::move(scene), width, height, options);
 }

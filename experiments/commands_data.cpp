@@ -72,6 +72,9 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   const Precision precision = parse_precision(a.precision);
   const auto resolution = parse_resolution(a.resolution);
+  if (a.max_depth && !is_path_estimator(a.estimator)) {
+    fail(ExitCode::kUsage, "--max_depth is for paths: give an --estimator such as path-balance");
+  }
   const auto source = is_path_estimator(a.estimator)
                           ? make_path_source(catalogue, a.scene, resolution, {a.max_depth, std::nullopt})
                           : make_source(catalogue, a.scene, resolution);
@@ -89,6 +92,9 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
   if (out.extension() != ".exr" && out.extension() != ".png") {
     fail(ExitCode::kUsage, "--out: '{}', allowed: a name that ends in .exr or .png", out.string());
   }
+  if (a.exposure != 0 && out.extension() == ".exr") {
+    fail(ExitCode::kUsage, "--exposure is for a .png; an .exr holds the radiance itself");
+  }
   if (!std::isfinite(a.exposure)) fail(ExitCode::kUsage, "--exposure: a finite number, found {}", a.exposure);
   const std::vector<double> values = render_replicate(*source, settings, catalogue);
   if (out.extension() == ".png") {
@@ -103,6 +109,7 @@ int render_command(const RenderArguments& a, const Catalogue& catalogue) {
 int reference_command(const ReferenceArguments& a, const Catalogue& catalogue) {
   const InterruptGuard guard;
   const auto resolution = parse_resolution(a.resolution);
+  if (a.max_depth && !a.paths) fail(ExitCode::kUsage, "--max_depth is for paths: give --paths as well");
   const auto source = a.paths ? make_path_source(catalogue, a.scene, resolution, {a.max_depth, 0})
                               : make_source(catalogue, a.scene, resolution);
   std::vector<int> pixels(static_cast<std::size_t>(source->pixels()));

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "estimators/path_transport.h"
 #include "experiments/commands.h"
 #include "experiments/joined.h"
 #include "experiments/message.h"
@@ -64,7 +65,8 @@ void print_text(const std::string& name, const SceneCheck& check) {
   row("sensor", summary.sensor);
   row("filter", summary.filter);
   const auto depth = [](const std::optional<int>& given) { return given ? fmt::format("{}", *given) : "not given"; };
-  row("max_depth", depth(check.scene->max_depth));
+  const bool unbounded = check.scene->max_depth == -1;
+  row("max_depth", unbounded ? fmt::format("no bound: paths go to {}", kMostDepth) : depth(check.scene->max_depth));
   row("rr_depth", depth(check.scene->rr_depth));
   for (const auto& [what, count] : check.ignored)
     row("not read", what + (count > 1 ? fmt::format(", {} times", count) : ""));

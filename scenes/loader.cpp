@@ -23,21 +23,26 @@ namespace {
 /// What the file's path integrator is asked for; how any other renders is no part of what is integrated.
 void read_integrator(const Element& element, Scene& scene, Reading& reading) {
   const std::string type = element.find("type").value_or("");
+  const bool paths = type == "path" || type == "volpath" || type == "volpathmis";
+  if (type == "direct") scene.max_depth = 2;
   for (const Element& child : element.children()) {
+    if (child.tag() == "integrator") {  // inside one that adds to what it renders
+      read_integrator(child, scene, reading);
+      continue;
+    }
     const std::string name = child.find("name").value_or(child.tag());
-    if (type != "path" || (name != "max_depth" && name != "rr_depth")) {
+    if (!paths || (name != "max_depth" && name != "rr_depth")) {
       ++reading.ignored[fmt::format("{} of integrator '{}'", name, type)];
       continue;
     }
     child.allow_attributes({"name", "value"});
     const double depth = child.numbers("value", 1)[0];
-    const bool whole = depth == std::trunc(depth) && depth < 1e9;
-    if (!whole || depth < (name == "max_depth" ? -1 : 1)) {
-      child.error("'{}' of integrator 'path' is {}, allowed: a whole number{}", name, depth,
-                  name == "max_depth" ? ", or -1 for no bound" : " from 1");
+    const bool whole = depth == std::trunc(depth) && depth >= 1 && depth < 1e9;
+    if (!whole && !(name == "max_depth" && depth == -1)) {
+      child.error("'{}' of integrator '{}' is {}, allowed: a whole number from 1{}", name, type, depth,
+                  name == "max_depth" ? ", or -1 for no bound" : "");
     }
-    if (name == "rr_depth") scene.rr_depth = static_cast<int>(depth);
-    if (name == "max_depth" && depth >= 0) scene.max_depth = static_cast<int>(depth);
+    (name == "rr_depth" ? scene.rr_depth : scene.max_depth) = static_cast<int>(depth);
   }
 }
 
@@ -63,6 +68,8 @@ class SceneReader {
     } else if (tag == "texture") {
       read_texture(element, reading_);
     } else if (tag == "integrator") {
+      if (has_integrator_) element.error("a second <integrator>, allowed: one");
+      has_integrator_ = true;
       read_integrator(element, scene_, reading_);
     } else if (tag != "default" && tag != "path" && tag != "alias") {
       element.unknown(
@@ -93,7 +100,7 @@ class SceneReader {
   Scene scene_;
   Reading reading_;
   std::size_t shapes_ = 0;
-  bool has_sensor_ = false;
+  bool has_sensor_ = false, has_integrator_ = false;
 };
 
 /// Refuses a file that is larger than any scene's before it is read.

@@ -62,7 +62,7 @@ struct Scene {
   std::vector<DeltaLight> delta_lights;
   std::optional<Environment> environment;
   Sensor sensor;
-  std::optional<int> max_depth;  ///< of the file's path integrator, in Mitsuba's count: 1 sees emitters only
+  std::optional<int> max_depth;  ///< of the file's integrator, in Mitsuba's count: 1 sees emitters only; −1: no bound
   std::optional<int> rr_depth;   ///< likewise: Russian roulette from this depth on
 };
 

@@ -66,8 +66,11 @@ void read_field_of_view(Properties& properties, Sensor& sensor) {
   sensor.fov_axis = FovAxis::kDiagonal;
 }
 
-/// near_clip and far_clip bound what Mitsuba sees; here all that a ray meets is seen.
-void know_clips(Properties& properties) { properties.know({"near_clip", "far_clip"}); }
+/// near_clip and far_clip bound what Mitsuba sees; here all that a ray meets is seen, and nothing moves while a shutter
+/// is open. Cameras without a lens take a focus_distance too.
+void know_unused(Properties& properties) {
+  properties.know({"near_clip", "far_clip", "focus_distance", "shutter_open", "shutter_close"});
+}
 
 void place_camera(const Properties& properties, const Eigen::Matrix4d& to_world, Sensor& sensor) {
   const Eigen::Matrix3d linear = to_world.topLeftCorner<3, 3>();
@@ -85,8 +88,8 @@ void place_camera(const Properties& properties, const Eigen::Matrix4d& to_world,
 Sensor read_perspective(Properties& properties, bool lens, Reading& reading) {
   Sensor sensor;
   properties.know({"to_world", "fov", "fov_axis", "focal_length"});
-  if (lens) properties.know({"aperture_radius", "focus_distance"});
-  know_clips(properties);
+  if (lens) properties.know({"aperture_radius"});
+  know_unused(properties);
   properties.finish();
   read_field_of_view(properties, sensor);
   if (lens) {
@@ -111,7 +114,7 @@ Sensor read_orthographic(Properties& properties, Reading& reading) {
   Sensor sensor;
   sensor.kind = Sensor::Kind::kOrthographic;
   properties.know({"to_world"});
-  know_clips(properties);
+  know_unused(properties);
   properties.finish();
   const Eigen::Matrix4d to_world = properties.transform("to_world").value_or(Eigen::Matrix4d::Identity());
   read_film_of(properties, reading, sensor);

@@ -47,6 +47,31 @@ TEST(PathFurnace, RussianRouletteReachesTheWholeSeries) {
   expect_all(closed_box(0.8), {kMostDepth, 5}, 5, 128);
 }
 
+// Two triangles of one plane, with normals so that they are not joined to a rectangle: rays that meet their common edge
+// are not shaded by the other triangle.
+TEST(PathFurnace, NoEdgeOfAMeshShadesItsOwnPlane) {
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = {{-3, -1, -1}, {3, -1, 1}, {3, 1, 1}, {-3, 1, -1}};
+  mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+  const float length = std::sqrt(10.f);
+  mesh->normals.assign(4, {-1 / length, 0, 3 / length});
+  Scene scene;
+  Primitive primitive = diffuse(rectangle(Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()), grey(1));
+  primitive.shape = std::shared_ptr<const Mesh>(mesh);
+  scene.primitives = {primitive};
+  scene.delta_lights.push_back(DirectionalLight{-Vec3::UnitZ(), grey(std::numbers::pi)});
+  scene.sensor.kind = Sensor::Kind::kRays;
+  for (int k = -9; k <= 9; ++k) scene.sensor.rays.push_back({Vec3(0.3 * k, 0.1 * k, 5), -Vec3::UnitZ()});
+  scene.sensor.width = static_cast<int>(scene.sensor.rays.size());
+  const DirectLighting direct(scene, scene.sensor.width, 1);
+  const PathTransport paths(scene, scene.sensor.width, 1, {2, 0});
+  for (int p = 0; p < scene.sensor.width; ++p) {
+    EXPECT_NEAR(direct.pixel(p).constant[0], 3 / std::sqrt(10.), 1e-6) << p;
+    const auto found = estimate<float>(paths, p, {.estimator = "path-light", .replicates = 16});
+    for (const double value : found[0]) EXPECT_NEAR(value, 3 / std::sqrt(10.), 1e-5) << p;
+  }
+}
+
 // pbrt's integrator test: a point light of intensity π in the middle of a unit sphere of albedo ½ gives ½ after one
 // bounce, and Σ ½^k = 1 after all.
 TEST(PathFurnace, PointLightInASphere) {

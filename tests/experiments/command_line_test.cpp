@@ -123,6 +123,9 @@ TEST_F(CommandLine, WrongUsageNamesTheNearestCommand) {
            {{"render", "--scene", "mis-toy", "--samples", "0"}, "the nearest legal: 2"},
            {{"render", "--scene", "mis-toy", "--estimator", "powr"}, "did you mean 'power'?"},
            {{"render", "--scene", "mis-toy", "--resolution", "0,4"}, "--resolution"},
+           {{"render", "--scene", "cornell-box", "--max_depth", "3"}, "--max_depth is for paths"},
+           {{"render", "--scene", "cornell-box", "--exposure", "1", "-o", "x.exr"}, "--exposure is for a .png"},
+           {{"reference", "--scene", "cornell-box", "--max_depth", "3"}, "--max_depth is for paths"},
            {{"reference", "--scene", "mis-toy", "--samples", "3"}, "--samples: at least 4"},
            {{"reference", "--scene", "mis-toy", "--relative-error", "-1"}, "--relative-error"},
            {{"reference", "--scene", "mis-toy", "--max-replicates", "4"}, "--max-replicates"}}) {

@@ -43,7 +43,7 @@ TEST_F(ScenesCommand, SaysWhatAShippedSceneHolds) {
   EXPECT_EQ(scene["lights"].size(), 5u);
   // π times the area times the radiance: a sphere of radius 0.1 and radiance 100.
   EXPECT_NEAR(scene["lights"][1]["power"][0], 4 * std::numbers::pi * std::numbers::pi * 0.01 * 100, 1e-9);
-  EXPECT_EQ(scene["max_depth"], nullptr);
+  EXPECT_EQ(scene["max_depth"], 2);
   EXPECT_THAT(
       scene["work"].get<std::vector<std::string>>(),
       AllOf(Contains(HasSubstr("grey scene: one channel")), Contains(HasSubstr("direct lighting's own kernels"))));

@@ -215,7 +215,7 @@ const std::vector<Wrong> kSensor = {
      "translations and lookat"},
     {"Property", camera("<float name='principal_point_offset_x' value='1'/>"),
      "wrong.xml:3: unknown property of sensor 'perspective' 'principal_point_offset_x', allowed: to_world, fov, "
-     "fov_axis, focal_length, near_clip, far_clip"},
+     "fov_axis, focal_length, near_clip, far_clip, focus_distance, shutter_open, shutter_close"},
     {"Film", camera("<film type='ldrfilm'/>"),
      "wrong.xml:3: unknown film 'ldrfilm', allowed: hdrfilm; did you mean 'hdrfilm'?"},
     {"Width", camera("<film type='hdrfilm'><integer name='width' value='0'/></film>"),

@@ -298,12 +298,15 @@ TEST(LoaderSurfaces, PathIntegrators) {
     return load("<integrator type='path'>" + inside + "</integrator><shape type='sphere'/>");
   };
   EXPECT_EQ(path("<integer name='max_depth' value='6'/>").max_depth, 6);
-  EXPECT_FALSE(path("<integer name='max_depth' value='-1'/>").max_depth);
+  EXPECT_EQ(path("<integer name='max_depth' value='-1'/>").max_depth, -1);
+  EXPECT_FALSE(path("").max_depth);
   EXPECT_FALSE(path("").rr_depth);
   EXPECT_EQ(path("<integer name='rr_depth' value='9'/><boolean name='hide_emitters' value='true'/>").rr_depth, 9);
-  EXPECT_FALSE(load("<integrator type='direct'><integer name='max_depth' value='6'/></integrator>"
-                    "<shape type='sphere'/>")
-                   .max_depth);
+  EXPECT_EQ(load("<integrator type='direct'/><shape type='sphere'/>").max_depth, 2);
+  EXPECT_EQ(load("<integrator type='aov'><integrator type='volpath'><integer name='max_depth' value='7'/></integrator>"
+                 "</integrator><shape type='sphere'/>")
+                .max_depth,
+            7);
 }
 
 }  // namespace
