@@ -1,5 +1,5 @@
 // The techniques of direct lighting and of a path's vertices. To add one: its line in each of the two lists here; a way
-// to choose a light, in estimators/transport_lights.h; a way to draw a direction, in estimators/point.kernel.cpp.
+// to choose a light, in estimators/transport_choice.h; a way to draw a direction, in estimators/point.kernel.cpp.
 #pragma once
 
 #include <array>

@@ -126,20 +126,6 @@ TEST(Environment, MeanRadianceIsThatOfTheInterpolatedMap) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 1e-5);
 }
 
-TEST(Environment, ASpotsSolidAngleIsItsPowerOverItsIntensity) {
-  SpotLight spot;
-  spot.cutoff_angle = 0.9, spot.beam_width = 0.4;
-  double sum = 0;
-  constexpr int kSteps = 100000;
-  for (int i = 0; i < kSteps; ++i) {
-    const double t = 0.9 * (i + 0.5) / kSteps;
-    sum += std::sin(t) * std::min(1.0, (0.9 - t) / 0.5);
-  }
-  EXPECT_NEAR(solid_angle(spot), 2 * kPi * sum * 0.9 / kSteps, 1e-8);
-  spot.beam_width = 0.9;
-  EXPECT_NEAR(solid_angle(spot), 2 * kPi * (1 - std::cos(0.9)), 1e-12);
-}
-
 template <class T>
 class EnvironmentMapOf : public testing::Test {};
 using Numbers = testing::Types<float, double>;
